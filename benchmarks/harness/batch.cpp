@@ -1,0 +1,50 @@
+#include "benchmarks/harness/batch.hpp"
+
+namespace definite {
+
+void ToTiles(const double* scalar, int numbers, std::int64_t size, double* tiled) {
+  for (std::int64_t i = 0; i < size; ++i) {
+    for (int k = 0; k < numbers; ++k) {
+      tiled[(i / kTile * numbers + k) * kTile + i % kTile] = scalar[i * numbers + k];
+    }
+  }
+}
+
+void FromTiles(const double* tiled, int numbers, std::int64_t size, double* scalar) {
+  for (std::int64_t i = 0; i < size; ++i) {
+    for (int k = 0; k < numbers; ++k) {
+      scalar[i * numbers + k] = tiled[(i / kTile * numbers + k) * kTile + i % kTile];
+    }
+  }
+}
+
+void Batch::Draw(const Distribution& distribution, std::uint64_t seed, std::uint64_t first,
+                 std::int64_t size) {
+  size_ = size;
+  for (auto* numbers : {&x_, &tiled_x_}) numbers->Resize(Offset(size, energy_->dofs));
+  for (auto* numbers : {&p_, &tiled_p_}) numbers->Resize(Offset(size, Parameters()));
+  const DrawTarget target = {energy_->stencil, energy_->dofs, energy_->parameters};
+  for (std::int64_t i = 0; i < size; ++i) {
+    distribution.draw(target, seed, first + static_cast<std::uint64_t>(i),
+                      x_.Data() + Offset(i, energy_->dofs), p_.Data() + Offset(i, Parameters()));
+  }
+  ToTiles(x_.Data(), energy_->dofs, size, tiled_x_.Data());
+  ToTiles(p_.Data(), Parameters(), size, tiled_p_.Data());
+}
+
+void RunOne(const KernelRow& row, const double* x, const double* p, double* out) {
+  const auto spread = [&](const double* numbers, std::size_t count) {
+    std::vector<double> tile;
+    for (std::size_t k = 0; k < count; ++k) {
+      tile.insert(tile.end(), static_cast<std::size_t>(row.lanes), numbers[k]);
+    }
+    return tile;
+  };
+  const std::vector<double> xs = spread(x, static_cast<std::size_t>(row.energy->dofs));
+  const std::vector<double> ps = spread(p, row.energy->parameters.size());
+  std::vector<double> tile(static_cast<std::size_t>(row.outputs * row.lanes));
+  row.run(xs.data(), ps.data(), tile.data(), 1);
+  for (int k = 0; k < row.outputs; ++k) out[k] = tile[static_cast<std::size_t>(k * row.lanes)];
+}
+
+}  // namespace definite

@@ -1,0 +1,72 @@
+#pragma once
+
+// Configurations drawn for one energy, in the layouts the rows want.
+
+#include <cstdint>
+#include <vector>
+
+#include "benchmarks/harness/sampling/distribution.hpp"
+#include "kernels/kernel.hpp"
+
+namespace definite {
+
+inline constexpr int kTile = 8;  // configurations in the widest tile; batches are multiples of it
+
+// Rounds up to whole tiles.
+constexpr std::int64_t WholeTiles(std::int64_t count) { return (count + kTile - 1) / kTile * kTile; }
+
+// Doubles that start at a cache line, as lanes like them.
+class AlignedDoubles {
+ public:
+  void Resize(std::size_t count) { lines_.resize((count + 7) / 8); }
+  double* Data() { return lines_.empty() ? nullptr : lines_.front().numbers; }
+  const double* Data() const { return lines_.empty() ? nullptr : lines_.front().numbers; }
+
+ private:
+  struct alignas(64) CacheLine {
+    double numbers[8];
+  };
+  std::vector<CacheLine> lines_;
+};
+
+// `size` configurations of an energy, each number twice: in scalar tiles, and in tiles of eight.
+class Batch {
+ public:
+  explicit Batch(const EnergyRow& energy) : energy_(&energy) {}
+
+  // Draws the configurations first, first + 1, ... of a distribution; size is a multiple of kTile.
+  void Draw(const Distribution& distribution, std::uint64_t seed, std::uint64_t first,
+            std::int64_t size);
+
+  std::int64_t Size() const { return size_; }
+  // Configuration i, in scalar layout.
+  const double* X(std::int64_t i) const { return x_.Data() + Offset(i, energy_->dofs); }
+  const double* P(std::int64_t i) const { return p_.Data() + Offset(i, Parameters()); }
+
+  // The tiles from configuration i on, as a row with that many lanes reads them.
+  const double* TilesX(int lanes, std::int64_t i) const {
+    return lanes == 1 ? X(i) : tiled_x_.Data() + Offset(i, energy_->dofs);
+  }
+  const double* TilesP(int lanes, std::int64_t i) const {
+    return lanes == 1 ? P(i) : tiled_p_.Data() + Offset(i, Parameters());
+  }
+
+ private:
+  int Parameters() const { return static_cast<int>(energy_->parameters.size()); }
+  static std::size_t Offset(std::int64_t i, int numbers) {
+    return static_cast<std::size_t>(i * numbers);
+  }
+
+  const EnergyRow* energy_;
+  std::int64_t size_ = 0;
+  AlignedDoubles x_, p_, tiled_x_, tiled_p_;
+};
+
+// Scalar layout (entry k of configuration i at [i * numbers + k]) to tiles of eight, and back.
+void ToTiles(const double* scalar, int numbers, std::int64_t size, double* tiled);
+void FromTiles(const double* tiled, int numbers, std::int64_t size, double* scalar);
+
+// Runs a row on one configuration, whatever its lanes; `out` has row.outputs numbers.
+void RunOne(const KernelRow& row, const double* x, const double* p, double* out);
+
+}  // namespace definite

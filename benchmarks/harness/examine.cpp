@@ -1,0 +1,304 @@
+#include "benchmarks/harness/examine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "benchmarks/harness/batch.hpp"
+
+namespace definite {
+
+namespace {
+
+using reference::Quad;
+
+constexpr double kDegraded = 1e-10;      // relative error beyond which a filter is degraded
+constexpr double kDoubt = 0.1;           // of a bound: beyond it double precision does not decide
+constexpr double kIllConditioned = 1e-10;  // u |H|/|P| beyond which it does not either
+constexpr double kGrowth = 4;            // |F| > kGrowth |H| counts as degraded
+
+template <class T>
+double NormOf(const reference::Matrix<T>& m) {
+  return static_cast<double>(reference::FrobeniusNorm(m));
+}
+
+// |f - m|, the differences taken in T.
+template <class T>
+double DistanceTo(Packed f, const reference::Matrix<T>& m) {
+  T sum = 0;
+  std::size_t k = 0;
+  for (int i = 0; i < m.rows; ++i) {
+    for (int j = i; j < m.rows; ++j) {
+      const T d = T(f[k++]) - m(i, j);
+      sum += (i == j ? 1 : 2) * d * d;
+    }
+  }
+  using std::sqrt;
+  return static_cast<double>(sqrt(sum));
+}
+
+// |f - m| / |m|, where 0/0 is 0.
+template <class T>
+double RelativeError(Packed f, const reference::Matrix<T>& m) {
+  const double distance = DistanceTo(f, m);
+  return distance == 0 ? 0 : distance / NormOf(m);
+}
+
+template <class T>
+std::vector<double> ToPacked(const reference::Matrix<T>& m) {
+  std::vector<double> a;
+  for (int i = 0; i < m.rows; ++i) {
+    for (int j = i; j < m.rows; ++j) a.push_back(static_cast<double>(m(i, j)));
+  }
+  return a;
+}
+
+double Norm(std::span<const double> v) {
+  double sum = 0;
+  for (double a : v) sum += a * a;
+  return std::sqrt(sum);
+}
+
+// How many eigenvalues of a are clearly positive.
+long PositiveCount(Packed a) {
+  const double threshold = kRatioBound * PackedRows(a) * kUnit * FrobeniusNorm(a);
+  return std::ranges::count_if(Eigenvalues(a), [&](double v) { return v > threshold; });
+}
+
+}  // namespace
+
+std::string_view PropertyName(Property property) {
+  switch (property) {
+    case Property::kFinite: return "finite";
+    case Property::kPsd: return "psd";
+    case Property::kAccurate: return "accurate";
+    case Property::kLanesEqualScalar: return "lanes_equal_scalar";
+    case Property::kKeepsPsd: return "keeps_psd";
+    case Property::kMajorises: return "majorises";
+    case Property::kRigidMotion: return "rigid_motion";
+    case Property::kTranslation: return "translation";
+    case Property::kScale: return "scale";
+    case Property::kRelabelling: return "relabelling";
+  }
+  return "unknown";
+}
+
+// The definitions of the filters at one configuration, each computed once for all rows.
+struct Examiner::Definitions {
+  reference::Truth<double> truth;
+  reference::Truth<Quad> quad_truth;
+  std::map<const void*, reference::Matrix<double>> matrices;
+  std::map<const void*, reference::Matrix<Quad>> quad_matrices;
+
+  Definitions(const reference::Energy<double>& energy, const reference::Energy<Quad>& quad_energy,
+              const double* x, const double* p)
+      : truth(energy, x, p), quad_truth(quad_energy, x, p) {}
+
+  const reference::Matrix<double>& Of(const reference::Filter<double>& filter) {
+    auto [at, is_new] = matrices.try_emplace(&filter);
+    if (is_new) at->second = filter.define(truth);
+    return at->second;
+  }
+  const reference::Matrix<Quad>& Of(const reference::Filter<Quad>& filter) {
+    auto [at, is_new] = quad_matrices.try_emplace(&filter);
+    if (is_new) at->second = filter.define(quad_truth);
+    return at->second;
+  }
+};
+
+Examiner::Examiner(const EnergyRow& energy, std::span<const KernelRow* const> rows)
+    : energy_(&energy),
+      rows_(rows.begin(), rows.end()),
+      exact_(FindKernel(energy.name + "/none/f64")),
+      nearest_(FindKernel(energy.name + "/numeric/f64")),
+      reference_(reference::FindEnergy<double>(energy.name)),
+      quad_reference_(reference::FindEnergy<Quad>(energy.name)),
+      figures_(rows.size()) {
+  if (!exact_ || !nearest_) {
+    throw std::runtime_error(energy.name + " lacks the row none/f64 or numeric/f64");
+  }
+  if (!reference_ || !quad_reference_) {
+    throw std::runtime_error(energy.name + " has no definition in reference/energies");
+  }
+  for (const KernelRow* row : rows_) {
+    filters_.push_back(reference::FindFilter<double>(row->filter));
+    quad_filters_.push_back(reference::FindFilter<Quad>(row->filter));
+    if (!filters_.back() || !quad_filters_.back()) {
+      throw std::runtime_error(std::string(row->filter) +
+                               " has no definition in reference/filters");
+    }
+  }
+}
+
+double Examiner::Bound() const {
+  return kRatioBound * energy_->dofs * kUnit / configuration_.conditioning;
+}
+
+void Examiner::Examine(const double* x, const double* p, Depth depth) {
+  const auto run = [&](const KernelRow& row) {
+    std::vector<double> out(static_cast<std::size_t>(row.outputs));
+    RunOne(row, x, p, out.data());
+    return out;
+  };
+  std::vector<std::vector<double>> results;
+  for (const KernelRow* row : rows_) results.push_back(run(*row));
+  const std::vector<Packed> outputs(results.begin(), results.end());
+  Examine(x, p, run(*exact_), run(*nearest_), outputs, depth);
+}
+
+void Examiner::Examine(const double* x, const double* p, Packed h, Packed nearest,
+                       std::span<const Packed> outputs, Depth depth) {
+  double classification[3];
+  energy_->classify(x, p, classification, 1);
+  configuration_ = {};
+  configuration_.active = classification[0] == 1;
+  configuration_.in_domain = classification[1] == 1;
+  std::ranges::fill(figures_, RowFigures{});
+  if (!configuration_.in_domain) {
+    for (RowFigures& figures : figures_) figures.verdict = Verdict::kOutOfDomain;
+    return;
+  }
+  if (!configuration_.active) return;
+
+  configuration_.indefinite = !IsPsd(h);
+  configuration_.conditioning = reference_->conditioning(x, p);
+  Definitions definitions(*reference_, *quad_reference_, x, p);
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    ExamineRow(r, x, p, h, nearest, outputs[r], depth, definitions);
+  }
+  if (depth >= Depth::kTruth) ExamineEnergy(x, p, definitions);
+}
+
+void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, Packed h,
+                          Packed nearest, Packed f, Depth depth, Definitions& definitions) {
+  const KernelRow& row = *rows_[r];
+  RowFigures& figures = figures_[r];
+  const auto breaks = [&](Property property) {
+    if (row.Promises(property)) figures.broken.push_back(property);
+  };
+  if (!AllFinite(f)) {
+    figures.verdict = Verdict::kNonFinite;
+    breaks(Property::kFinite);
+    return;
+  }
+  const double h_norm = FrobeniusNorm(h), nearest_norm = FrobeniusNorm(nearest);
+  figures.distance = RelativeDistance(f, nearest);
+  const double change = FrobeniusDistance(f, h), least_change = FrobeniusDistance(nearest, h);
+  figures.excess = change == 0 && least_change == 0 ? 1 : change / least_change;
+
+  if (FrobeniusNorm(f) > kGrowth * h_norm) figures.verdict = Verdict::kDegraded;
+  if (depth >= Depth::kDefinition) {
+    figures.defined = true;
+    const double bound = kDegraded / configuration_.conditioning;
+    double error = RelativeError(f, definitions.Of(*filters_[r]));
+    // Written so that a NaN is doubted too.
+    const bool ill_conditioned = !(kUnit * h_norm <= kIllConditioned * nearest_norm);
+    if (depth >= Depth::kTruth || ill_conditioned || !(error <= kDoubt * bound)) {
+      ExamineTruth(r, f, definitions);
+      error = *figures.rounding * energy_->dofs * kUnit;
+      if (!(*figures.conditioned_rounding <= kRatioBound)) breaks(Property::kAccurate);
+    }
+    if (!(error <= bound)) figures.verdict = Verdict::kDegraded;
+  }
+  if (!IsPsd(f)) {
+    figures.verdict = Verdict::kNonPsd;
+    breaks(Property::kPsd);
+  }
+  if (AllZero(f) && !AllZero(h)) figures.verdict = Verdict::kSilentZero;
+  if (depth >= Depth::kSpectral) {
+    ExamineSpectrum(r, x, p, h, f);
+    const double bound = Bound();
+    if (*figures.majorises * h_norm > bound * (h_norm + FrobeniusNorm(f))) {
+      breaks(Property::kMajorises);
+    }
+    if (*figures.relabelling * FrobeniusNorm(f) > 2 * bound * (h_norm + FrobeniusNorm(f))) {
+      breaks(Property::kRelabelling);
+    }
+  }
+}
+
+void Examiner::ExamineTruth(std::size_t r, Packed f, Definitions& definitions) {
+  RowFigures& figures = figures_[r];
+  const reference::Matrix<Quad>& definition = definitions.Of(*quad_filters_[r]);
+  figures.rounding = RelativeError(f, definition) / (energy_->dofs * kUnit);
+  figures.conditioned_rounding = *figures.rounding * configuration_.conditioning;
+  figures.flip = PositiveCount(f) != PositiveCount(ToPacked(definition));
+  // The double P carries an error of u |H|; the true one replaces it here.
+  const reference::Matrix<Quad>& exact = definitions.quad_truth.Hessian();
+  const reference::Matrix<Quad>& nearest = definitions.quad_truth.Nearest();
+  figures.distance = RelativeError(f, nearest);
+  const double change = DistanceTo(f, exact), least_change = NormOf(exact - nearest);
+  figures.excess = change == 0 && least_change == 0 ? 1 : change / least_change;
+}
+
+void Examiner::ExamineSpectrum(std::size_t r, const double* x, const double* p, Packed h,
+                               Packed f) {
+  RowFigures& figures = figures_[r];
+  const double norm = FrobeniusNorm(f), h_norm = FrobeniusNorm(h);
+  const auto below_zero = [](Packed a) { return std::max(0.0, -Eigenvalues(a).front()); };
+  figures.psd_defect = norm == 0 ? 0 : below_zero(f) / (energy_->dofs * kUnit * norm);
+  figures.majorises = h_norm == 0 ? 0 : below_zero(Difference(f, h)) / h_norm;
+
+  const int n = energy_->dofs, dimension = energy_->dimension, vertices = n / dimension;
+  const auto at = [n](int i, int j) {
+    if (i > j) std::swap(i, j);
+    return static_cast<std::size_t>(i * n - i * (i - 1) / 2 + j - i);
+  };
+  double spread = 0;
+  std::vector<double> relabelled_x(static_cast<std::size_t>(n)), relabelled(f.size());
+  std::vector<double> back(f.size());
+  for (std::size_t first = 0; first < energy_->relabellings.size();
+       first += static_cast<std::size_t>(vertices)) {
+    const auto old_coordinate = [&](int i) {
+      return energy_->relabellings[first + static_cast<std::size_t>(i / dimension)] * dimension +
+             i % dimension;
+    };
+    for (int i = 0; i < n; ++i) {
+      relabelled_x[static_cast<std::size_t>(i)] = x[old_coordinate(i)];
+    }
+    RunOne(*rows_[r], relabelled_x.data(), p, relabelled.data());
+    for (int i = 0; i < n; ++i) {
+      for (int j = i; j < n; ++j) {
+        back[at(old_coordinate(i), old_coordinate(j))] = relabelled[at(i, j)];
+      }
+    }
+    spread = std::max(spread, FrobeniusDistance(back, f));
+  }
+  figures.relabelling = spread == 0 ? 0 : spread / norm;
+}
+
+void Examiner::ExamineEnergy(const double* x, const double* p, Definitions& definitions) {
+  const auto n = static_cast<std::size_t>(energy_->dofs);
+  double value;
+  std::vector<double> gradient(n);
+  energy_->value(x, p, &value, 1);
+  energy_->gradient(x, p, gradient.data(), 1);
+
+  // Errors in units of what a perturbation of x by one rounding does.
+  reference::Truth<Quad>& truth = definitions.quad_truth;
+  std::vector<double> exact_gradient, error;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Quad exact = truth.Gradient()[static_cast<int>(i)];
+    exact_gradient.push_back(static_cast<double>(exact));
+    error.push_back(static_cast<double>(gradient[i] - exact));
+  }
+  const double x_norm = Norm({x, n}), g_norm = Norm(exact_gradient);
+  const double value_error = std::abs(static_cast<double>(Quad(value) - truth.Value()));
+  const auto ratio = [&](double distance, double scale) {
+    return distance == 0 ? 0
+                         : distance / scale * configuration_.conditioning /
+                               (energy_->dofs * kUnit);
+  };
+  configuration_.value_rounding =
+      ratio(value_error, std::abs(static_cast<double>(truth.Value())) + g_norm * x_norm);
+  configuration_.gradient_rounding =
+      ratio(Norm(error), g_norm + NormOf(truth.Hessian()) * x_norm);
+  const double worst = std::max(*configuration_.value_rounding, *configuration_.gradient_rounding);
+  if (!(worst * energy_->dofs * kUnit <= kDegraded)) {
+    for (RowFigures& figures : figures_) figures.verdict = Verdict::kInconsistent;
+  }
+}
+
+}  // namespace definite

@@ -1,0 +1,104 @@
+#pragma once
+
+// One configuration of one energy, held against what it should be: the figures and verdicts of
+// docs/protocol.md, section 1. The checked pass, replay and the tests all judge by this.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "benchmarks/harness/figures.hpp"
+#include "kernels/kernel.hpp"
+#include "reference/oracle.hpp"
+
+namespace definite {
+
+enum class Verdict {
+  kPass,
+  kDegraded,
+  kNonPsd,
+  kNonFinite,
+  kSilentZero,
+  kInconsistent,
+  kOutOfDomain,
+  kCrash,  // of a fuzzed case; a sweep has none
+};
+inline constexpr int kVerdictCount = 8;
+inline constexpr std::array<std::string_view, kVerdictCount> kVerdictNames = {
+    "pass",        "degraded",     "non_psd",       "non_finite",
+    "silent_zero", "inconsistent", "out_of_domain", "crash"};
+
+std::string_view PropertyName(Property property);
+
+// How closely to look. Each level includes those before it.
+enum class Depth {
+  kCheap,       // distance, excess, finite, PSD yes or no: microseconds
+  kDefinition,  // the filter's definition in double; where in doubt, in float128
+  kSpectral,    // eigenvalues, majorisation, relabelling
+  kTruth,       // everything in float128: milliseconds
+};
+
+// What one row made of one configuration. Empty where the depth did not ask for it.
+struct RowFigures {
+  std::optional<double> distance, excess;
+  std::optional<double> psd_defect, majorises, relabelling;
+  std::optional<double> rounding, conditioned_rounding;
+  std::optional<bool> flip;
+  bool defined = false;  // held against its definition
+  Verdict verdict = Verdict::kPass;
+  // Promised properties that this configuration shows to be broken.
+  std::vector<Property> broken;
+};
+
+// What holds for a configuration whatever the filter.
+struct ConfigurationFigures {
+  bool in_domain = false, active = false, indefinite = false;
+  double conditioning = 1;  // sin of the edge angle, or as the protocol says for other families
+  std::optional<double> value_rounding, gradient_rounding;  // conditioned, in units of n u
+};
+
+// Judges rows of one energy. Not thread safe; one for each thread.
+class Examiner {
+ public:
+  // The energy must have a reference and the rows none/f64 and numeric/f64, which give H and P in
+  // double; throws std::runtime_error otherwise. Rows may be any of the energy's, in any order.
+  Examiner(const EnergyRow& energy, std::span<const KernelRow* const> rows);
+
+  // Judges configuration (x, p). outputs[r] is what row r made of it, outputs `h` and `nearest` what
+  // none/f64 and numeric/f64 did.
+  void Examine(const double* x, const double* p, Packed h, Packed nearest,
+               std::span<const Packed> outputs, Depth depth);
+
+  // The same, running the rows first.
+  void Examine(const double* x, const double* p, Depth depth);
+
+  const KernelRow& ExactRow() const { return *exact_; }
+  const KernelRow& NearestRow() const { return *nearest_; }
+  const ConfigurationFigures& Configuration() const { return configuration_; }
+  const RowFigures& Row(std::size_t r) const { return figures_[r]; }
+
+ private:
+  struct Definitions;
+
+  void ExamineRow(std::size_t r, const double* x, const double* p, Packed h, Packed nearest,
+                  Packed f, Depth depth, Definitions& definitions);
+  void ExamineSpectrum(std::size_t r, const double* x, const double* p, Packed h, Packed f);
+  void ExamineTruth(std::size_t r, Packed f, Definitions& definitions);
+  void ExamineEnergy(const double* x, const double* p, Definitions& definitions);
+  double Bound() const;  // of an error relative to |F|, by the conditioning
+
+  const EnergyRow* energy_;
+  std::vector<const KernelRow*> rows_;
+  const KernelRow* exact_;
+  const KernelRow* nearest_;
+  const reference::Energy<double>* reference_;
+  const reference::Energy<reference::Quad>* quad_reference_;
+  std::vector<const reference::Filter<double>*> filters_;
+  std::vector<const reference::Filter<reference::Quad>*> quad_filters_;
+  ConfigurationFigures configuration_;
+  std::vector<RowFigures> figures_;
+};
+
+}  // namespace definite

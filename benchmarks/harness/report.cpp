@@ -1,0 +1,246 @@
+#include "benchmarks/harness/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/machine.hpp"
+#include "benchmarks/harness/timed_pass.hpp"
+
+namespace definite {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// JSON has no infinity and no NaN: they are written as strings, unknown as null.
+Json Number(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+}
+
+Json Point(const SweepPlan& plan, const EnergyRow& energy, const Worst& worst,
+           const std::optional<double>& exact) {
+  Batch batch(energy);
+  batch.Draw(*plan.distribution, plan.seed, worst.index, kTile);
+  Json point = {{"value", Number(worst.value)}, {"index", worst.index}};
+  point["exact"] = exact ? Number(*exact) : Json();
+  for (int i = 0; i < energy.dofs; ++i) point["x"].push_back(HexFloat(batch.X(0)[i]));
+  for (std::size_t i = 0; i < energy.parameters.size(); ++i) {
+    point["p"].push_back(HexFloat(batch.P(0)[i]));
+  }
+  return point;
+}
+
+// `exact` is what float128 makes of the worst case, where it was asked and differs in principle.
+Json ToJson(const Figure& figure, const SweepPlan& plan, const EnergyRow& energy,
+            const std::map<std::uint64_t, RowFigures>& worst_cases,
+            std::optional<double> RowFigures::*exact) {
+  const auto summary = figure.Summarize();
+  if (!summary) return nullptr;
+  std::optional<double> value;
+  if (const auto at = worst_cases.find(summary->max.index); exact && at != worst_cases.end()) {
+    value = at->second.*exact;
+  }
+  Json json = {{"count", summary->count},
+               {"nan", figure.NanCount()},
+               {"min", Number(summary->min)},
+               {"median", Number(summary->median)},
+               {"p99", Number(summary->p99)},
+               {"p999", Number(summary->p999)},
+               {"max", Point(plan, energy, summary->max, value)}};
+  Json histogram = Json::array();
+  for (const Histogram::Bucket& bucket : figure.Values().Buckets()) {
+    histogram.push_back({bucket.lower, bucket.count});
+  }
+  json["histogram"] = std::move(histogram);
+  return json;
+}
+
+Json ToJson(const std::optional<MedianEstimate>& estimate, double factor) {
+  if (!estimate) return nullptr;
+  return {{"median", estimate->median * factor},
+          {"minimum", estimate->minimum * factor},
+          {"low", estimate->low * factor},
+          {"high", estimate->high * factor}};
+}
+
+const RowResult* Baseline(const EnergyResult& energy) {
+  for (const RowResult& r : energy.rows) {
+    if (r.row->filter == "numeric" && r.row->scalar == "f64") return &r;
+  }
+  return nullptr;
+}
+
+// Round by round: baseline / row.
+std::optional<MedianEstimate> RatioTo(const RowResult* baseline, const RowResult& row) {
+  if (!baseline) return std::nullopt;
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < row.timing.rounds.size(); ++i) {
+    ratios.push_back(baseline->timing.rounds[i] / row.timing.rounds[i]);
+  }
+  return EstimateMedian(ratios);
+}
+
+double Fraction(std::uint64_t part, std::uint64_t whole) {
+  return whole ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowResult& r) {
+  const SweepPlan& plan = result.plan;
+  const EnergyStatistics& e = energy.statistics;
+  const RowStatistics& s = r.statistics;
+  Json row;
+  row["kernel"] = r.row->name;
+  row["energy"] = energy.energy->name;
+  row["filter"] = r.row->filter;
+  row["scalar"] = r.row->scalar;
+  row["source"] = fmt::format("{}; {}", energy.energy->source, r.row->source);
+  row["distribution"] = plan.distribution->name;
+  row["count"] = e.count;
+  row["active"] = e.active;
+  row["active_fraction"] = e.count ? Json(Fraction(e.active, e.count)) : Json();
+  row["indefinite_fraction"] = e.active ? Json(Fraction(e.indefinite, e.active)) : Json();
+  row["timing"] = Json::array();
+  if (!r.timing.rounds.empty()) {
+    Json timing;
+    timing["threads"] = plan.threads;
+    timing["clock"] = plan.threads == 1 ? "thread_cpu" : "wall";
+    timing["rounds"] = r.timing.rounds.size();
+    timing["output"] = r.row->output;
+    timing["ring"] = "L1";
+    timing["ring_configurations"] = kRing;
+    timing["stages"] = {"frame", "hessian", "filter", "write"};
+    timing["ns_per_hessian"] = ToJson(EstimateMedian(r.timing.rounds), 1e9);
+    timing["ratio_to"] = {{"numeric", ToJson(RatioTo(Baseline(energy), r), 1)},
+                          {"floor", nullptr}};
+    row["timing"].push_back(timing);
+  }
+  const auto figure = [&](const Figure& f, std::optional<double> RowFigures::*exact) {
+    return ToJson(f, plan, *energy.energy, r.worst_cases, exact);
+  };
+  row["accuracy"] = {{"distance", figure(s.distance, &RowFigures::distance)},
+                     {"excess", figure(s.excess, &RowFigures::excess)},
+                     {"rounding", figure(s.rounding, nullptr)},
+                     {"conditioned_rounding", figure(s.conditioned_rounding, nullptr)},
+                     {"psd_defect", figure(s.psd_defect, nullptr)},
+                     {"majorises", figure(s.majorises, nullptr)},
+                     {"relabelling", figure(s.relabelling, nullptr)},
+                     {"value_rounding", figure(e.value_rounding, nullptr)},
+                     {"gradient_rounding", figure(e.gradient_rounding, nullptr)},
+                     {"flips", s.flips},
+                     {"flip_checks", s.flip_checks},
+                     {"defined", s.defined}};
+  for (std::size_t v = 0; v < s.verdicts.size(); ++v) {
+    row["verdicts"][std::string(kVerdictNames[v])] = s.verdicts[v];
+  }
+  row["broken_promises"] = Json::array();
+  for (const auto& [property, index] : s.broken) {
+    row["broken_promises"].push_back({{"property", PropertyName(property)}, {"index", index}});
+  }
+  row["checksum"] = fmt::format("{:016x}", s.checksum);
+  return row;
+}
+
+std::string Short(const Figure& figure, double Figure::Summary::*value) {
+  const auto summary = figure.Summarize();
+  return summary ? fmt::format("{:.1e}", (*summary).*value) : "-";
+}
+
+std::string ShortMax(const Figure& figure) {
+  const auto summary = figure.Summarize();
+  return summary ? fmt::format("{:.1e}", summary->max.value) : "-";
+}
+
+// The worst verdict there is, and how often.
+std::string VerdictSummary(const RowStatistics& s) {
+  std::uint64_t total = 0;
+  for (std::uint64_t n : s.verdicts) total += n;
+  if (total == 0) return "-";
+  for (Verdict v : {Verdict::kCrash, Verdict::kNonFinite, Verdict::kInconsistent,
+                    Verdict::kSilentZero, Verdict::kNonPsd, Verdict::kDegraded,
+                    Verdict::kOutOfDomain}) {
+    const auto i = static_cast<std::size_t>(v);
+    if (s.verdicts[i]) {
+      return fmt::format("{} {:.3g} %", kVerdictNames[i], 100 * Fraction(s.verdicts[i], total));
+    }
+  }
+  return "pass";
+}
+
+}  // namespace
+
+std::string HexFloat(double value) { return fmt::format("{:a}", value); }
+
+std::string WithCommas(std::uint64_t value) {
+  if (value < 1000) return std::to_string(value);
+  return fmt::format("{},{:03}", WithCommas(value / 1000), value % 1000);
+}
+
+Json ToJson(const SweepResult& result, const std::vector<std::string>& command) {
+  Json json;
+  json["schema"] = "definite/1";
+  json["protocol"] = ProtocolHash();
+  json["command"] = command;
+  json["machine"] = DescribeMachine();
+  json["build"] = DescribeBuild();
+  json["seed"] = result.plan.seed;
+  json["partial"] = result.partial;
+  json["rows"] = Json::array();
+  for (const EnergyResult& energy : result.energies) {
+    for (const RowResult& r : energy.rows) json["rows"].push_back(RowToJson(result, energy, r));
+  }
+  return json;
+}
+
+std::string ToTable(const SweepResult& result) {
+  std::string table;
+  for (const EnergyResult& energy : result.energies) {
+    const EnergyStatistics& e = energy.statistics;
+    table += fmt::format("{}\n{}, seed {}: {} configurations, {:.4g} % active, {:.4g} % of them "
+                         "indefinite\n\n",
+                         energy.energy->name, result.plan.distribution->name, result.plan.seed,
+                         WithCommas(e.count), 100 * Fraction(e.active, e.count),
+                         100 * Fraction(e.indefinite, e.active));
+    table += fmt::format("{:<17}{:<6}{:>8}{:>9} |{:>24} |{:>8}{:>8}{:>8} | {}\n", "", "", "ns per",
+                         "numeric", "distance to nearest  ", "rounding", "PSD", "relab.", "");
+    table += fmt::format("{:<17}{:<6}{:>8}{:>9} |{:>8}{:>8}{:>8} |{:>8}{:>8}{:>8} | {}\n", "filter",
+                         "", "Hessian", "/ this", "median", "p99", "max", "max", "defect", "spread",
+                         "verdict");
+    for (const RowResult& r : energy.rows) {
+      const RowStatistics& s = r.statistics;
+      const auto time = EstimateMedian(r.timing.rounds);
+      const auto ratio = RatioTo(Baseline(energy), r);
+      table += fmt::format(
+          "{:<17}{:<6}{:>8}{:>9} |{:>8}{:>8}{:>8} |{:>8}{:>8}{:>8} | {}\n", r.row->filter,
+          r.row->scalar, time ? fmt::format("{:.1f}", time->median * 1e9) : "-",
+          ratio ? fmt::format("{:.1f}", ratio->median) : "-",
+          Short(s.distance, &Figure::Summary::median), Short(s.distance, &Figure::Summary::p99),
+          ShortMax(s.distance), ShortMax(s.conditioned_rounding), ShortMax(s.psd_defect),
+          ShortMax(s.relabelling), VerdictSummary(s));
+    }
+    table += "\n";
+  }
+  return table;
+}
+
+std::string ReplayCommand(const SweepPlan& plan, const KernelRow& row, std::uint64_t index) {
+  return fmt::format("definite replay --kernel {} --distribution {} --seed {} --index {}",
+                     row.name, plan.distribution->name, plan.seed, index);
+}
+
+std::string BrokenPromises(const SweepResult& result) {
+  std::string lines;
+  for (const EnergyResult& energy : result.energies) {
+    for (const RowResult& r : energy.rows) {
+      for (const auto& [property, index] : r.statistics.broken) {
+        lines += fmt::format("{} promises to be {} and is not:\n  {}\n", r.row->name,
+                             PropertyName(property), ReplayCommand(result.plan, *r.row, index));
+      }
+    }
+  }
+  return lines;
+}
+
+}  // namespace definite

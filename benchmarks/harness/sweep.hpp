@@ -1,0 +1,86 @@
+#pragma once
+
+// A sweep drives rows over the configurations 0 .. count-1 of a distribution: a timed pass that
+// never checks, then a checked pass that is never timed (docs/protocol.md).
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "benchmarks/harness/bootstrap.hpp"
+#include "benchmarks/harness/examine.hpp"
+#include "benchmarks/harness/progress.hpp"
+#include "benchmarks/harness/sampling/distribution.hpp"
+#include "benchmarks/harness/statistics.hpp"
+#include "kernels/kernel.hpp"
+
+namespace definite {
+
+struct SweepPlan {
+  std::vector<const KernelRow*> rows;
+  const Distribution* distribution = nullptr;
+  std::uint64_t seed = 42;
+  std::uint64_t count = 10'000'000;
+  int threads = 1;
+  bool timing = true;
+};
+
+// Seconds per configuration of one row, a number for each round.
+struct RowTiming {
+  std::vector<double> rounds;
+};
+
+// What the checked pass knows of one row.
+struct RowStatistics {
+  Figure distance, excess, psd_defect, majorises, relabelling, rounding, conditioned_rounding;
+  std::array<std::uint64_t, kVerdictCount> verdicts{};
+  std::uint64_t defined = 0;            // configurations held against the filter's definition
+  std::uint64_t flips = 0, flip_checks = 0;
+  std::uint64_t checksum = 0;           // of all outputs, bit for bit
+  std::map<Property, std::uint64_t> broken;  // property -> smallest index
+
+  void Add(const RowFigures& figures, std::uint64_t index);
+  // Only what float128 added of a configuration that was counted before.
+  void AddTruth(const RowFigures& figures, std::uint64_t index);
+  void Merge(const RowStatistics& other);
+};
+
+// What holds for the configurations, whatever the filter.
+struct EnergyStatistics {
+  std::uint64_t count = 0, active = 0, indefinite = 0, out_of_domain = 0;
+  Figure value_rounding, gradient_rounding;
+
+  void Add(const ConfigurationFigures& figures, std::uint64_t index);
+  void Merge(const EnergyStatistics& other);
+};
+
+struct RowResult {
+  const KernelRow* row;
+  RowTiming timing;
+  RowStatistics statistics;
+  std::map<std::uint64_t, RowFigures> worst_cases;  // looked at again in float128, by index
+};
+
+struct EnergyResult {
+  const EnergyRow* energy;
+  EnergyStatistics statistics;
+  std::vector<RowResult> rows;
+};
+
+struct SweepResult {
+  SweepPlan plan;
+  std::vector<EnergyResult> energies;
+  bool partial = false;
+};
+
+// Runs both passes. Stops at the next block when interrupted (progress.hpp); what is complete by
+// then is a prefix of the configurations, and the result says that it is partial.
+SweepResult RunSweep(const SweepPlan& plan, Progress& progress);
+
+// How closely configuration `index` of `count` is looked at.
+Depth DepthOf(std::uint64_t index, std::uint64_t count);
+
+}  // namespace definite

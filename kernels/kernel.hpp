@@ -1,0 +1,178 @@
+#pragma once
+
+// THE interface: read this file first.
+//
+// Every Hessian is a sum of modes, H = sum_m lambda[m] v[m] v[m]^T. An energy knows its modes, a
+// filter is a map on them or a recipe of its own, and both are written once over a scalar type T.
+// The programs see neither: they see two plain tables, AllEnergies() and AllKernels().
+
+#include <concepts>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "kernels/core/vec.hpp"
+
+namespace definite {
+
+// H = sum_m lambda[m] v[m] v[m]^T. The v[m] need be neither unit nor orthogonal.
+template <class T, int D, int K>
+struct Modes {
+  static constexpr int kCount = K;
+  T lambda[K];
+  Vec<T, D> v[K];
+};
+
+// Upper triangle of a symmetric matrix, row by row.
+template <class T, int D>
+struct PackedSym {
+  static constexpr int kSize = D * (D + 1) / 2;
+  T a[kSize];
+};
+
+// Which set of modes. All sets of one energy sum to the same matrix.
+enum class Set {
+  kFrame,    // of the paper's reduced frame, in a form that is stable everywhere in the domain
+  kPrinted,  // of the reduced frame, by the formulas as printed
+};
+
+// Which part of a set; a filter asks only for what it keeps.
+enum class Part {
+  kCurvature,  // psi'' alone: what Gauss-Newton keeps
+  kPositive,   // the modes that may be positive
+  kAll,
+};
+
+// Where a configuration lies, 1 for yes and 0 for no.
+template <class T>
+struct Classification {
+  T active;     // the energy acts: l < eps for a penalty
+  T in_domain;  // the energy and its Hessian are defined
+  T region;     // which closest feature is in force; 0 where there is one only
+};
+
+// A parameter of an energy. Lengths of a configuration times s, and each parameter times
+// s^length_power, leave the Hessian unchanged.
+struct Parameter {
+  std::string_view name;
+  double value;  // default
+  int length_power;
+  std::string_view meaning;
+};
+
+// What a row is held to. A filter promises every property but those it lists as exempt, with a
+// reason; kernels/PROMISES.txt is the golden list.
+enum class Property {
+  kFinite,            // no NaN or infinity in the domain
+  kPsd,               // -lambda_min(F) / (n u |F|) at most 50
+  kAccurate,          // conditioned rounding against its definition in float128 at most 50
+  kLanesEqualScalar,  // f64x8 equals f64 bit for bit
+  kKeepsPsd,          // F = H where H is PSD already
+  kMajorises,         // F - H is PSD
+  kRigidMotion,       // F(R x + t) = R F(x) R^T
+  kTranslation,       // translations lie in the null space
+  kScale,             // lengths in another unit give the same F (Parameter::length_power)
+  kRelabelling,       // the numbering of the vertices does not matter
+};
+inline constexpr int kPropertyCount = 10;
+
+struct Exemption {
+  Property property;
+  std::string_view why;
+};
+
+// An energy psi(x; p) of D degrees of freedom. Value is a cancellation-free form, since a line
+// search calls it. Outside the domain, and where inactive, all results are zero.
+template <class E, class T>
+concept EnergyOver = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+  { E::Name() } -> std::convertible_to<std::string>;
+  { E::kSource } -> std::convertible_to<std::string_view>;
+  { E::Stencil::kName } -> std::convertible_to<std::string_view>;
+  { std::span<const Parameter>(E::kParameters) };
+  { E::Value(x, p) } -> std::same_as<T>;
+  { E::Gradient(x, p) } -> std::same_as<Vec<T, E::kDofs>>;
+  { E::Classify(x, p) } -> std::same_as<Classification<T>>;
+  { E::template HessianModes<Set::kFrame, Part::kAll>(x, p).lambda[0] } -> std::same_as<T&&>;
+  { E::template HessianModes<Set::kFrame, Part::kAll>(x, p).v[0] } -> std::same_as<Vec<T, E::kDofs>&&>;
+  E::template HessianModes<Set::kFrame, Part::kPositive>(x, p);
+  E::template HessianModes<Set::kFrame, Part::kCurvature>(x, p);
+};
+
+// A filter gives a symmetric matrix that stands in for the Hessian of any energy it fits.
+template <class F, class E, class T>
+concept FilterOver =
+    EnergyOver<E, T> && requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+      { F::kName } -> std::convertible_to<std::string_view>;
+      { F::kSource } -> std::convertible_to<std::string_view>;
+      { std::span<const Exemption>(F::kExempt) };
+      { F::template Apply<E>(x, p) } -> std::same_as<PackedSym<T, E::kDofs>>;
+    };
+
+// An energy that offers the modes of a set.
+template <class E, class T, Set kSet>
+concept OffersSet = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+  E::template HessianModes<kSet, Part::kAll>(x, p);
+};
+
+// sum_m map(lambda[m]) v[m] v[m]^T.
+template <class T, int D, int K, class Map>
+DEFINITE_INLINE PackedSym<T, D> Assemble(const Modes<T, D, K>& modes, Map map) {
+  PackedSym<T, D> h;
+  Vec<T, D> scaled[K];
+#pragma GCC unroll 16
+  for (int m = 0; m < K; ++m) scaled[m] = map(modes.lambda[m]) * modes.v[m];
+#pragma GCC unroll 16
+  for (int i = 0; i < D; ++i) {
+#pragma GCC unroll 16
+    for (int j = i; j < D; ++j) {
+      T sum = scaled[0][i] * modes.v[0][j];
+#pragma GCC unroll 16
+      for (int m = 1; m < K; ++m) sum = MulAdd(scaled[m][i], modes.v[m][j], sum);
+      h.a[i * D - i * (i - 1) / 2 + j - i] = sum;
+    }
+  }
+  return h;
+}
+
+// Works on a run of tiles. A tile is W configurations, number by number: entry i of lane w at
+// [i * W + w]. W is the row's lanes; a scalar row has W = 1.
+using TileFunction = void (*)(const double* x, const double* p, double* out, long tiles);
+
+// One for each energy; its functions are scalar (W = 1).
+struct EnergyRow {
+  std::string name;         // "collision/vertex_face/signed/quadratic"
+  std::string_view source;  // paper and equations
+  std::string_view stencil;
+  int dofs;
+  std::span<const Parameter> parameters;
+  // Permutations of the vertices that leave the energy unchanged, `dofs / dimension` entries each.
+  std::span<const int> relabellings;
+  int dimension;          // coordinates of a vertex
+  TileFunction value;     // 1 number
+  TileFunction gradient;  // dofs numbers
+  TileFunction classify;  // active, in_domain, region
+};
+
+// One for each energy x filter x scalar x output.
+struct KernelRow {
+  std::string name;  // "collision/vertex_face/signed/quadratic/analytic/f64x8"
+  const EnergyRow* energy;
+  std::string_view filter, source, scalar, output;
+  std::span<const Exemption> exempt;
+  int lanes;
+  int outputs;  // numbers written for each configuration
+  TileFunction run;
+
+  bool Promises(Property property) const {
+    for (const Exemption& e : exempt) {
+      if (e.property == property) return false;
+    }
+    return true;
+  }
+};
+
+std::span<const EnergyRow> AllEnergies();
+std::span<const KernelRow> AllKernels();
+const KernelRow* FindKernel(std::string_view name);  // by its full name; null if there is none
+
+}  // namespace definite

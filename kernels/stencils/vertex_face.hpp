@@ -1,0 +1,48 @@
+#pragma once
+
+// A vertex x0 over a triangle x1, x2, x3, as the edges the length functions work on.
+//
+// Source: Shi & Kim 2023, section 3.1 and Eq. 19 (left). Orientation: with these edges e0 x e1 is
+// opposite to the counter-clockwise normal of (x1, x2, x3).
+
+#include <string_view>
+
+#include "kernels/core/vec.hpp"
+
+namespace definite {
+
+struct VertexFace {
+  static constexpr std::string_view kName = "vertex_face";
+  static constexpr int kVertices = 4;
+  static constexpr int kDofs = 12;
+  static constexpr int kDimension = 3;
+  // Cyclic turns of the triangle. A swap of two of its vertices would flip the signed length.
+  static constexpr int kRelabellings[] = {0, 2, 3, 1, 0, 3, 1, 2};
+
+  // e0 = x1 - x2, e1 = x3 - x2, e2 = x0 - x2.
+  template <class T>
+  struct Edges {
+    Vec3<T> e0, e1, e2;
+  };
+  template <class T>
+  static DEFINITE_INLINE Edges<T> EdgesOf(const Vec<T, kDofs>& x) {
+    const Vec3<T> x2 = Vertex(x, 2);
+    return {Vertex(x, 1) - x2, Vertex(x, 3) - x2, Vertex(x, 0) - x2};
+  }
+
+  // Rows of the frame map over the vertices, Eq. 19: c_i = sum_j S_ij x_j.
+  template <class T>
+  static DEFINITE_INLINE Vec<T, 4> Row0() {
+    return {T(0.0), T(1.0), T(-1.0), T(0.0)};
+  }
+  template <class T>
+  static DEFINITE_INLINE Vec<T, 4> Row1(const T& alpha) {
+    return {T(0.0), -alpha, alpha - T(1.0), T(1.0)};
+  }
+  template <class T>
+  static DEFINITE_INLINE Vec<T, 4> Row2(const T& beta, const T& gamma) {
+    return {T(1.0), -beta, (beta + gamma) - T(1.0), -gamma};
+  }
+};
+
+}  // namespace definite

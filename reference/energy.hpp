@@ -1,0 +1,114 @@
+#pragma once
+
+#include <concepts>
+#include <string_view>
+
+#include "reference/dual.hpp"
+#include "reference/matrix.hpp"
+
+namespace definite::reference {
+
+template <class T>
+struct Derivatives {
+  T value;
+  Matrix<T> gradient;  // dofs x 1
+  Matrix<T> hessian;   // dofs x dofs
+};
+
+template <class T>
+struct Frame {
+  Matrix<T> hessian;  // of psi in the frame coordinates c: frame_dofs x frame_dofs
+  Matrix<T> map;      // S, c = S x with its weights frozen at x: frame_dofs x dofs
+};
+
+// One energy psi(x; p), by name. x has `dofs` entries, p has `params`; units are the caller's. Ask
+// in_domain first: outside, the other functions may return anything. Where psi is not active (it
+// vanishes identically nearby) they return zeros. A function that psi has no use for is null. In
+// double nothing is scaled: entries of x beyond about 1e+-50 overflow or underflow; Quad takes
+// every double.
+template <class T>
+struct Energy {
+  std::string_view name;
+  int dofs;
+  int params;
+  int frame_dofs;  // 0: no frame
+  bool (*in_domain)(const T* x, const T* p);
+  bool (*active)(const T* x, const T* p);
+  // At most 1: what bounds on rounding are divided by (docs/protocol.md, section 1).
+  double (*conditioning)(const T* x, const T* p);
+  T (*value)(const T* x, const T* p);
+  Derivatives<T> (*derivatives)(const T* x, const T* p);
+  T (*length)(const T* x, const T* p);             // s, where psi is a penalty of a scalar s(x)
+  Matrix<T> (*curvature)(const T* x, const T* p);  // psi''(s) grad s grad s^T, dofs x dofs
+  Frame<T> (*frame)(const T* x, const T* p);
+};
+
+// What an energy must define, in plain form, for any scalar S (T itself or dual numbers over it).
+// Optional: Length(x, p) and Penalty(s, p) with psi = Penalty(Length); kFrameDofs, FrameValue(c, p)
+// and FrameAt(x, at, p), the frame coordinates c of x with their weights frozen at `at` (T), such
+// that psi(x) = FrameValue(FrameAt(x, x)).
+template <class E>
+concept EnergyDefinition = requires(const Dual2<double, E::kDofs>* x, const double* p) {
+  { E::kName } -> std::convertible_to<std::string_view>;
+  { E::kParams } -> std::convertible_to<int>;
+  { E::Value(x, p) } -> std::same_as<Dual2<double, E::kDofs>>;
+  { E::InDomain(p, p) } -> std::same_as<bool>;
+  { E::Active(p, p) } -> std::same_as<bool>;
+  { E::Conditioning(p, p) } -> std::same_as<double>;
+};
+
+// The line by which CMake finds an energy: on one line, in namespace definite::reference.
+#define DEFINITE_REFERENCE_ENERGY(...) \
+  static_assert(::definite::reference::EnergyDefinition<__VA_ARGS__>)
+
+template <class T, int N>
+Derivatives<T> Unpack(const Dual2<T, N>& a) {
+  Derivatives<T> d{a.value, Matrix<T>(N, 1), Matrix<T>(N, N)};
+  for (int i = 0, k = 0; i < N; ++i) {
+    d.gradient[i] = a.gradient[i];
+    for (int j = i; j < N; ++j, ++k) d.hessian(i, j) = d.hessian(j, i) = a.hessian[k];
+  }
+  return d;
+}
+
+// The table row of an energy: every derivative by automatic differentiation.
+template <class T, EnergyDefinition E>
+constexpr Energy<T> MakeEnergy() {
+  Energy<T> row{};
+  row.name = E::kName;
+  row.dofs = E::kDofs;
+  row.params = E::kParams;
+  row.in_domain = [](const T* x, const T* p) { return E::InDomain(x, p); };
+  row.active = [](const T* x, const T* p) { return E::Active(x, p); };
+  row.conditioning = [](const T* x, const T* p) { return E::Conditioning(x, p); };
+  row.value = [](const T* x, const T* p) { return E::Value(x, p); };
+  row.derivatives = [](const T* x, const T* p) {
+    return Unpack(E::Value(Variables<E::kDofs>(x).data(), p));
+  };
+  if constexpr (requires(const T* x) { E::Penalty(E::Length(x, x), x); }) {
+    row.length = [](const T* x, const T* p) { return E::Length(x, p); };
+    row.curvature = [](const T* x, const T* p) {
+      const Derivatives<T> s = Unpack(E::Length(Variables<E::kDofs>(x).data(), p));
+      const auto psi = E::Penalty(Variables<1>(&s.value)[0], p);
+      return Outer(psi.hessian[0], s.gradient);
+    };
+  }
+  if constexpr (requires { E::kFrameDofs; }) {
+    row.frame_dofs = E::kFrameDofs;
+    row.frame = [](const T* x, const T* p) {
+      const auto frame = E::FrameAt(Variables<E::kDofs>(x).data(), x, p);
+      const Dual2<T, E::kDofs>* c = frame.data();
+      T values[E::kFrameDofs];
+      Matrix<T> map(E::kFrameDofs, E::kDofs);
+      for (int i = 0; i < E::kFrameDofs; ++i) {
+        values[i] = c[i].value;
+        for (int j = 0; j < E::kDofs; ++j) map(i, j) = c[i].gradient[j];
+      }
+      const auto psi = E::FrameValue(Variables<E::kFrameDofs>(values).data(), p);
+      return Frame<T>{Unpack(psi).hessian, map};
+    };
+  }
+  return row;
+}
+
+}  // namespace definite::reference

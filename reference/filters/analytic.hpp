@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+
+#include "reference/filter.hpp"
+
+namespace definite::reference {
+
+// Clamp in the reduced frame, then pull back (Shi & Kim 2023, section 4).
+struct Analytic {
+  static constexpr std::string_view kName = "analytic";
+
+  template <class T>
+  static Matrix<T> Define(Truth<T>& truth) {
+    return Congruence(NearestPsd(SpectrumOf(truth.FrameHessian())), truth.FrameMap());
+  }
+};
+
+DEFINITE_REFERENCE_FILTER(Analytic);
+
+}  // namespace definite::reference

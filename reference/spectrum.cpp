@@ -1,0 +1,25 @@
+#include "reference/spectrum.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace definite::reference {
+
+Spectrum<double> EigenSpectrum(const Matrix<double>& a) {
+  const int n = a.rows;
+  // Eigen 3.4 reports success for some matrices with a NaN or an infinity on the diagonal.
+  if (!AllFinite(a)) return UndefinedSpectrum<double>(n);
+
+  // Eigen reads the lower triangle of its column-major view: our row-major upper one.
+  const Eigen::Map<const Eigen::MatrixXd> view(a.entries.data(), n, n);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(view);
+  if (solver.info() != Eigen::Success) return UndefinedSpectrum<double>(n);
+
+  Spectrum<double> spectrum{Matrix<double>(n, 1), Matrix<double>(n, n)};
+  for (int j = 0; j < n; ++j) {
+    spectrum.values[j] = solver.eigenvalues()[j];
+    for (int i = 0; i < n; ++i) spectrum.vectors(i, j) = solver.eigenvectors()(i, j);
+  }
+  return spectrum;
+}
+
+}  // namespace definite::reference

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "reference/energy.hpp"
+#include "reference/spectrum.hpp"
+
+namespace definite::reference {
+
+// Everything known about one configuration (x, p) of an energy, each quantity computed on first use
+// and kept. Outside the energy's domain every quantity is NaN; where inactive all are zero but the
+// length and the frame map. Not thread safe; cheap to make.
+template <class T>
+class Truth {
+ public:
+  // x has energy.dofs entries, p has energy.params; both are copied. `energy` must outlive this.
+  template <class U>
+  Truth(const Energy<T>& energy, const U* x, const U* p)
+      : energy_(energy),
+        x_(x, x + energy.dofs),
+        p_(p, p + energy.params),
+        in_domain_(energy.in_domain(x_.data(), p_.data())) {}
+
+  const Energy<T>& Of() const { return energy_; }
+  bool InDomain() const { return in_domain_; }
+  bool Active() const { return in_domain_ && energy_.active(x_.data(), p_.data()); }
+
+  const T& Value() { return AllDerivatives().value; }
+  const Matrix<T>& Gradient() { return AllDerivatives().gradient; }
+  const Matrix<T>& Hessian() { return AllDerivatives().hessian; }
+
+  const Spectrum<T>& HessianSpectrum() {
+    return Keep(spectrum_, [&] { return SpectrumOf(Hessian()); });
+  }
+  // The PSD matrix nearest to the Hessian in the Frobenius norm.
+  const Matrix<T>& Nearest() {
+    return Keep(nearest_, [&] { return NearestPsd(HessianSpectrum()); });
+  }
+  // Gauss-Newton: psi''(s) grad s grad s^T. Throws std::logic_error if the energy is not a penalty
+  // of a scalar.
+  const Matrix<T>& Curvature() {
+    return Keep(curvature_,
+                [&] { return At(energy_.curvature, Undefined(energy_.dofs, energy_.dofs)); });
+  }
+  // The Hessian in frame coordinates and the map S from x to them. Both throw std::logic_error if
+  // the energy has no frame.
+  const Matrix<T>& FrameHessian() { return WholeFrame().hessian; }
+  const Matrix<T>& FrameMap() { return WholeFrame().map; }
+
+ private:
+  template <class Q, class F>
+  static const Q& Keep(std::optional<Q>& kept, F compute) {
+    if (!kept) kept = compute();
+    return *kept;
+  }
+  template <class Q>
+  Q At(Q (*function)(const T*, const T*), Q undefined) const {
+    if (!function) throw std::logic_error(std::string(energy_.name) + " has no such quantity");
+    return in_domain_ ? function(x_.data(), p_.data()) : undefined;
+  }
+  static Matrix<T> Undefined(int m, int n) { return Matrix<T>(m, n, kNaN); }
+
+  const Derivatives<T>& AllDerivatives() {
+    const int n = energy_.dofs;
+    return Keep(derivatives_, [&] {
+      return At(energy_.derivatives, {kNaN, Undefined(n, 1), Undefined(n, n)});
+    });
+  }
+  const Frame<T>& WholeFrame() {
+    const int n = energy_.dofs, m = energy_.frame_dofs;
+    return Keep(frame_, [&] { return At(energy_.frame, {Undefined(m, m), Undefined(m, n)}); });
+  }
+
+  inline static const T kNaN = std::numeric_limits<T>::quiet_NaN();
+
+  const Energy<T>& energy_;
+  std::vector<T> x_;
+  std::vector<T> p_;
+  bool in_domain_;
+  std::optional<Derivatives<T>> derivatives_;
+  std::optional<Spectrum<T>> spectrum_;
+  std::optional<Matrix<T>> nearest_;
+  std::optional<Matrix<T>> curvature_;
+  std::optional<Frame<T>> frame_;
+};
+
+}  // namespace definite::reference

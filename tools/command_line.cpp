@@ -1,0 +1,110 @@
+#include "tools/command_line.hpp"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+namespace definite {
+
+namespace {
+
+// Levenshtein's distance.
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t above = row[j + 1];
+      row[j + 1] = std::min({above + 1, row[j] + 1, diagonal + (a[i] != b[j])});
+      diagonal = above;
+    }
+  }
+  return row.back();
+}
+
+// "did you mean": the names nearest to a word, three at most.
+std::string NearNames(std::string_view word, std::vector<std::string> names) {
+  std::ranges::stable_sort(names, {}, [&](const std::string& n) { return EditDistance(word, n); });
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, names.size()); ++i) {
+    text += "\n  " + names[i];
+  }
+  return text;
+}
+
+std::vector<std::string> RowNames() {
+  std::vector<std::string> names;
+  for (const KernelRow& row : AllKernels()) names.push_back(row.name);
+  return names;
+}
+
+}  // namespace
+
+std::uint64_t ParseCount(const std::string& option, const std::string& text, std::uint64_t minimum,
+                         std::uint64_t maximum) {
+  const auto fail = [&](const std::string& expected) -> UsageError {
+    return UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  };
+  double value = 0;
+  const char* const last = text.data() + text.size();
+  auto [end, error] = std::from_chars(text.data(), last, value);
+  if (error == std::errc() && end != last && end + 1 == last) {
+    const std::string_view suffixes = "kMG";
+    const std::size_t power = suffixes.find(*end);
+    if (power != suffixes.npos) {
+      value *= std::pow(1000.0, static_cast<double>(power + 1));
+      end = last;
+    }
+  }
+  if (error != std::errc() || end != last || !(value == std::floor(value))) {
+    throw fail("a whole number such as 1000, 1e7 or 10M");
+  }
+  if (value < static_cast<double>(minimum)) throw fail(fmt::format("at least {}", minimum));
+  if (value > std::min(0x1p53, static_cast<double>(maximum))) {
+    throw fail(fmt::format("at most {}", std::min(maximum, std::uint64_t{1} << 53)));
+  }
+  return static_cast<std::uint64_t>(value);
+}
+
+std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs) {
+  std::vector<const KernelRow*> rows;
+  for (const std::string& glob : globs) {
+    const auto matches = [&](const KernelRow& row) {
+      return fnmatch(glob.c_str(), row.name.c_str(), 0) == 0;
+    };
+    if (std::ranges::none_of(AllKernels(), matches)) {
+      throw UsageError(fmt::format("--kernels '{}': no row has such a name; the nearest are:{}",
+                                   glob, NearNames(glob, RowNames())));
+    }
+  }
+  for (const KernelRow& row : AllKernels()) {
+    if (std::ranges::any_of(globs, [&](const std::string& glob) {
+          return fnmatch(glob.c_str(), row.name.c_str(), 0) == 0;
+        })) {
+      rows.push_back(&row);
+    }
+  }
+  return rows;
+}
+
+const KernelRow& RowNamed(const std::string& name) {
+  if (const KernelRow* row = FindKernel(name)) return *row;
+  throw UsageError(fmt::format("--kernel '{}': no such row; the nearest are:{}", name,
+                               NearNames(name, RowNames())));
+}
+
+const Distribution& DistributionNamed(const std::string& name) {
+  if (const Distribution* distribution = FindDistribution(name)) return *distribution;
+  std::string known;
+  for (const Distribution& d : AllDistributions()) {
+    known += fmt::format("\n  {:<8} {}", d.name, d.description);
+  }
+  throw UsageError(fmt::format("--distribution '{}': expected one of{}", name, known));
+}
+
+}  // namespace definite

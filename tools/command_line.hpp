@@ -1,0 +1,44 @@
+#pragma once
+
+// What the subcommands share: one grammar for all.
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "benchmarks/harness/sampling/distribution.hpp"
+#include "kernels/kernel.hpp"
+
+namespace definite {
+
+// Exit codes.
+inline constexpr int kOk = 0, kBroken = 1, kUsage = 2, kInterrupted = 130;
+
+// Bad input. The message names the value, its place and what was expected.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A whole number such as 1000, 1e7, 10M, 2.5k. `option` is named in the error.
+std::uint64_t ParseCount(const std::string& option, const std::string& text, std::uint64_t minimum,
+                         std::uint64_t maximum = UINT64_MAX);
+
+// The rows whose names match a glob, in which * crosses /. Throws UsageError with near names if
+// there is none.
+std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs);
+
+const KernelRow& RowNamed(const std::string& name);
+const Distribution& DistributionNamed(const std::string& name);
+
+// Registers a subcommand with its options; `exit_code` gets what it returns. One for each file.
+void AddSweep(CLI::App& app, int& exit_code);
+void AddReplay(CLI::App& app, int& exit_code);
+void AddList(CLI::App& app, int& exit_code);
+
+// The words of the command line, as given.
+const std::vector<std::string>& CommandWords();
+
+}  // namespace definite

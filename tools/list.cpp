@@ -1,0 +1,34 @@
+// definite list: the rows there are.
+
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "tools/command_line.hpp"
+
+namespace definite {
+
+void AddList(CLI::App& app, int&) {
+  struct Options {
+    std::vector<std::string> kernels = {"*"};
+    bool long_form = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("list", "Prints the full name of each row, one a line");
+  command->add_option("--kernels", options->kernels, "Rows, as globs in which * crosses /")
+      ->capture_default_str();
+  command->add_flag("--long", options->long_form, "Sources and parameters too");
+  command->footer("Examples:\n  definite list\n  definite list --long --kernels '*/analytic/*'");
+  command->callback([options] {
+    for (const KernelRow* row : RowsMatching(options->kernels)) {
+      fmt::print("{}\n", row->name);
+      if (!options->long_form) continue;
+      fmt::print("  energy  {}\n  filter  {}\n", row->energy->source, row->source);
+      for (const Parameter& p : row->energy->parameters) {
+        fmt::print("  {:<7} {} (default {})\n", p.name, p.meaning, p.value);
+      }
+    }
+  });
+}
+
+}  // namespace definite

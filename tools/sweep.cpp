@@ -1,0 +1,107 @@
+// definite sweep: speed beside accuracy, over many drawn configurations.
+
+#include "benchmarks/harness/sweep.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "benchmarks/harness/report.hpp"
+#include "tools/command_line.hpp"
+#include "tools/output_file.hpp"
+
+namespace definite {
+
+namespace {
+
+constexpr std::uint64_t kQuickCount = 100'000;
+
+struct Options {
+  std::vector<std::string> kernels = {"*"};
+  std::string distribution = "active";
+  std::string count = "1e7";
+  std::string seed = "42";
+  std::string threads = "0";
+  std::string json;
+  bool threads_given = false, quick = false, no_timing = false;
+};
+
+SweepPlan PlanOf(const Options& options) {
+  SweepPlan plan;
+  plan.rows = RowsMatching(options.kernels);
+  plan.distribution = &DistributionNamed(options.distribution);
+  plan.count = options.quick ? kQuickCount : ParseCount("--count", options.count, 1);
+  plan.seed = ParseCount("--seed", options.seed, 0);
+  plan.threads = options.threads_given
+                     ? static_cast<int>(ParseCount("--threads", options.threads, 1, 1024))
+                     : static_cast<int>(std::thread::hardware_concurrency());
+  plan.timing = !options.no_timing;
+  std::erase_if(plan.rows, [&](const KernelRow* row) {
+    return !plan.distribution->supports(row->energy->stencil);
+  });
+  if (plan.rows.empty()) {
+    throw UsageError(fmt::format("--distribution '{}': it cannot draw any of the rows asked for",
+                                 options.distribution));
+  }
+  return plan;
+}
+
+int RunSweepCommand(const Options& options) {
+  const SweepPlan plan = PlanOf(options);
+  std::optional<OutputFile> json;
+  if (!options.json.empty()) json.emplace("--json", options.json);
+
+  Progress progress(isatty(STDERR_FILENO) != 0);
+  const SweepResult result = RunSweep(plan, progress);
+
+  if (json) json->Commit(ToJson(result, CommandWords()).dump() + "\n");
+  if (options.json != "-") fmt::print("{}", ToTable(result));
+  const std::string broken = BrokenPromises(result);
+  fmt::print(stderr, "{}", broken);
+  if (result.partial) {
+    fmt::print(stderr, "definite: interrupted; what was complete by then is above{}\n",
+               json ? " and in the file, marked partial" : "");
+    return kInterrupted;
+  }
+  return broken.empty() ? kOk : kBroken;
+}
+
+}  // namespace
+
+void AddSweep(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "sweep", "Times rows over drawn configurations, and checks what they give");
+  command->add_option("--kernels", options->kernels, "Rows, as globs in which * crosses /")
+      ->capture_default_str();
+  command->add_option("--distribution", options->distribution, "paper, normal or active")
+      ->capture_default_str();
+  command->add_option("--count", options->count, "Configurations: 1000, 1e7, 10M")
+      ->capture_default_str();
+  command->add_flag("--quick", options->quick, "The same as --count 1e5");
+  command->add_option("--seed", options->seed, "Seed of the configurations")
+      ->capture_default_str();
+  CLI::Option* threads =
+      command->add_option("--threads", options->threads, "Threads; default: all cores");
+  command->add_option("--json", options->json, "Write the whole result to FILE; - is standard output")
+      ->type_name("FILE");
+  command->add_flag("--no-timing", options->no_timing, "Check only");
+  command->footer(
+      "Times are thread CPU time on one thread, wall time on more; 'numeric / this' is the median\n"
+      "of the ratios round by round. 'rounding' is the error against the filter's definition in\n"
+      "float128 in units of n u |F|, times the sine of the edge angle. A promise that is broken\n"
+      "exits 1 with the command that replays it.\n\n"
+      "Examples:\n"
+      "  definite sweep --quick\n"
+      "  definite sweep --kernels '*/analytic/*' --kernels '*/numeric/f64' --distribution paper\n"
+      "  definite sweep --count 1e6 --threads 1 --json - | jq '.rows[].kernel'");
+  command->callback([options, threads, &exit_code] {
+    options->threads_given = threads->count() > 0;
+    exit_code = RunSweepCommand(*options);
+  });
+}
+
+}  // namespace definite
