@@ -74,7 +74,6 @@ enum class Property {
   kScale,             // lengths in another unit give the same F (Parameter::length_power)
   kRelabelling,       // the numbering of the vertices does not matter
 };
-inline constexpr int kPropertyCount = 10;
 
 struct Exemption {
   Property property;

@@ -6,7 +6,7 @@ namespace definite::reference {
 
 Spectrum<double> EigenSpectrum(const Matrix<double>& a) {
   const int n = a.rows;
-  // Eigen 3.4 reports success for some matrices with a NaN or an infinity on the diagonal.
+  // Eigen 3.4 reports success if the first entry is infinite.
   if (!AllFinite(a)) return UndefinedSpectrum<double>(n);
 
   // Eigen reads the lower triangle of its column-major view: our row-major upper one.

@@ -41,7 +41,7 @@ Spectrum<T> JacobiSpectrum(Matrix<T> a) {
   using std::abs, std::sqrt;
   const T u = std::numeric_limits<T>::epsilon() / 2;
   const int n = a.rows;
-  const int kMaxSweeps = 60;  // 12 x 12 takes 8 to 13 in float128, 25 if graded over 1e+-2000
+  constexpr int kMaxSweeps = 60;  // 12 x 12 takes 8 to 13 in float128, 25 if graded over 1e+-2000
 
   if (!AllFinite(a)) return UndefinedSpectrum<T>(n);
   Matrix<T> v(n, n);

@@ -3,6 +3,8 @@
 // Two energies from outside the collision family, to see that the interface holds them: 9 and 6
 // degrees of freedom, and modes that are coupled. They live in the tests only.
 
+#include <array>
+
 #include "kernels/registry.hpp"
 
 namespace definite::testing {
@@ -38,8 +40,8 @@ struct StrandBend {
   static constexpr std::string_view kSource = "Shi et al. 2023, Lifted Curls supplement, section 1";
   static constexpr int kDofs = 9, kParams = 3;
   static constexpr Parameter kParameters[] = {{"mu", 1.0, 2, "stiffness"},
-                                              {"cos_theta0", 0.6, 0, "of the rest angle"},
-                                              {"sin_theta0", 0.8, 0, "of the rest angle"}};
+                                              {"cos_theta0", 0.0, 0, "of the rest angle"},
+                                              {"sin_theta0", 1.0, 0, "of the rest angle"}};
   static std::string Name() { return "test/strand_bend"; }
 
   template <class T>
@@ -134,7 +136,7 @@ struct StrandBend {
 
 struct Triangle2D {
   static constexpr std::string_view kName = "triangle";
-  static constexpr int kRelabellings[] = {1, 2, 0};
+  static constexpr std::array<int, 0> kRelabellings{};  // the rest shape tells the vertices apart
   static constexpr int kDimension = 2;
 };
 

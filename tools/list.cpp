@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "benchmarks/harness/promises.hpp"
 #include "tools/command_line.hpp"
 
 namespace definite {
@@ -11,15 +12,21 @@ namespace definite {
 void AddList(CLI::App& app, int&) {
   struct Options {
     std::vector<std::string> kernels = {"*"};
-    bool long_form = false;
+    bool long_form = false, promises = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("list", "Prints the full name of each row, one a line");
   command->add_option("--kernels", options->kernels, "Rows, as globs in which * crosses /")
       ->capture_default_str();
   command->add_flag("--long", options->long_form, "Sources and parameters too");
+  command->add_flag("--promises", options->promises,
+                    "Instead: what each filter promises, and what it is exempt from and why");
   command->footer("Examples:\n  definite list\n  definite list --long --kernels '*/analytic/*'");
   command->callback([options] {
+    if (options->promises) {
+      fmt::print("{}", PromiseTable());
+      return;
+    }
     for (const KernelRow* row : RowsMatching(options->kernels)) {
       fmt::print("{}\n", row->name);
       if (!options->long_form) continue;

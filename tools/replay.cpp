@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/promises.hpp"
 #include "benchmarks/harness/report.hpp"
 #include "tools/command_line.hpp"
 

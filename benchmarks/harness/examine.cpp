@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -68,22 +69,6 @@ long PositiveCount(Packed a) {
 }
 
 }  // namespace
-
-std::string_view PropertyName(Property property) {
-  switch (property) {
-    case Property::kFinite: return "finite";
-    case Property::kPsd: return "psd";
-    case Property::kAccurate: return "accurate";
-    case Property::kLanesEqualScalar: return "lanes_equal_scalar";
-    case Property::kKeepsPsd: return "keeps_psd";
-    case Property::kMajorises: return "majorises";
-    case Property::kRigidMotion: return "rigid_motion";
-    case Property::kTranslation: return "translation";
-    case Property::kScale: return "scale";
-    case Property::kRelabelling: return "relabelling";
-  }
-  return "unknown";
-}
 
 // The definitions of the filters at one configuration, each computed once for all rows.
 struct Examiner::Definitions {
@@ -166,9 +151,25 @@ void Examiner::Examine(const double* x, const double* p, Packed h, Packed neares
   configuration_.conditioning = reference_->conditioning(x, p);
   Definitions definitions(*reference_, *quad_reference_, x, p);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    ExamineRow(r, x, p, h, nearest, outputs[r], depth, definitions);
+    // Lanes give the same bits as the scalar row before them, as a rule: no need to look twice.
+    const std::size_t twin = TwinOf(r, outputs);
+    if (twin < r) {
+      figures_[r] = figures_[twin];
+    } else {
+      ExamineRow(r, x, p, h, nearest, outputs[r], depth, definitions);
+    }
   }
   if (depth >= Depth::kTruth) ExamineEnergy(x, p, definitions);
+}
+
+std::size_t Examiner::TwinOf(std::size_t r, std::span<const Packed> outputs) const {
+  std::size_t twin = 0;
+  while (twin < r && (rows_[twin]->filter != rows_[r]->filter ||
+                      std::memcmp(outputs[twin].data(), outputs[r].data(),
+                                  outputs[r].size_bytes()) != 0)) {
+    ++twin;
+  }
+  return twin;
 }
 
 void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, Packed h,

@@ -30,8 +30,6 @@ inline constexpr std::array<std::string_view, kVerdictCount> kVerdictNames = {
     "pass",        "degraded",     "non_psd",       "non_finite",
     "silent_zero", "inconsistent", "out_of_domain", "crash"};
 
-std::string_view PropertyName(Property property);
-
 // How closely to look. Each level includes those before it.
 enum class Depth {
   kCheap,       // distance, excess, finite, PSD yes or no: microseconds
@@ -82,6 +80,8 @@ class Examiner {
  private:
   struct Definitions;
 
+  // The first row of the same filter with the same bits, r itself if there is none before it.
+  std::size_t TwinOf(std::size_t r, std::span<const Packed> outputs) const;
   void ExamineRow(std::size_t r, const double* x, const double* p, Packed h, Packed nearest,
                   Packed f, Depth depth, Definitions& definitions);
   void ExamineSpectrum(std::size_t r, const double* x, const double* p, Packed h, Packed f);

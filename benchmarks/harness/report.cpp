@@ -6,6 +6,7 @@
 
 #include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/machine.hpp"
+#include "benchmarks/harness/promises.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
 
 namespace definite {

@@ -78,10 +78,13 @@ void EnergyStatistics::Merge(const EnergyStatistics& other) {
 }
 
 Depth DepthOf(std::uint64_t index, std::uint64_t count) {
-  const auto stride = [count](std::uint64_t samples) { return (count + samples - 1) / samples; };
-  if (index % std::max<std::uint64_t>(100, stride(10'000)) == 0) return Depth::kTruth;
-  if (index % stride(100'000) == 0) return Depth::kSpectral;
-  if (index % stride(1'000'000) == 0) return Depth::kDefinition;
+  // Every so many configurations, so that there are at most `samples`, and at most one in `every`.
+  const auto sampled = [&](std::uint64_t samples, std::uint64_t every) {
+    return index % std::max(every, (count + samples - 1) / samples) == 0;
+  };
+  if (sampled(10'000, 100)) return Depth::kTruth;
+  if (sampled(100'000, 10)) return Depth::kSpectral;
+  if (sampled(1'000'000, 1)) return Depth::kDefinition;
   return Depth::kCheap;
 }
 

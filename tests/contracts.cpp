@@ -1,0 +1,313 @@
+#include "tests/contracts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/examine.hpp"
+#include "benchmarks/harness/figures.hpp"
+
+namespace definite::testing {
+
+namespace {
+
+// Entry (i, j) of a packed matrix of n rows.
+double At(const std::vector<double>& a, int n, int i, int j) {
+  if (i > j) std::swap(i, j);
+  return a[static_cast<std::size_t>(i * n - i * (i - 1) / 2 + j - i)];
+}
+
+double Infinite(double value) {
+  return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+}
+
+double Scale(const std::vector<double>& f, const std::vector<double>& h) {
+  return FrobeniusNorm(f) + FrobeniusNorm(h);
+}
+
+// |f - g| against the rounding that a well-written filter of H may show.
+double AgainstRounding(const std::vector<double>& f, const std::vector<double>& g,
+                       const std::vector<double>& h, int n, double conditioning) {
+  const double bound = kRatioBound * n * kUnit / conditioning * Scale(f, h);
+  const double distance = FrobeniusDistance(f, g);
+  return distance == 0 ? 0 : Infinite(distance / bound);
+}
+
+// A rotation of the plane or of space, as a d x d matrix.
+struct Rotation {
+  std::vector<double> r;
+  bool exact;  // entries 0 and +-1: turning a configuration rounds nothing
+};
+
+std::vector<Rotation> Rotations(int dimension) {
+  if (dimension == 2) return {{{0, -1, 1, 0}, true}, {{0.6, -0.8, 0.8, 0.6}, false}};
+  return {{{0, 1, 0, 0, 0, 1, 1, 0, 0}, true},
+          {{0, -1, 0, 1, 0, 0, 0, 0, 1}, true},
+          {{1, 0, 0, 0, 0, -1, 0, 1, 0}, true},
+          {{2. / 3, -1. / 3, 2. / 3, 2. / 3, 2. / 3, -1. / 3, -1. / 3, 2. / 3, 2. / 3}, false}};
+}
+
+double ConditioningOf(const EnergyRow& energy, const std::vector<double>& x,
+                      const std::vector<double>& p) {
+  const auto* reference = reference::FindEnergy<double>(energy.name);
+  return reference ? reference->conditioning(x.data(), p.data()) : 1;
+}
+
+double RigidMotion(const Subject& s, const Configuration& c, const std::vector<double>& f,
+                   const std::vector<double>& h) {
+  const EnergyRow& energy = *s.row->energy;
+  const int n = energy.dofs, d = energy.dimension;
+  double worst = 0;
+  for (const Rotation& rotation : Rotations(d)) {
+    const auto r = [&](int i, int j) { return rotation.r[static_cast<std::size_t>(i * d + j)]; };
+    std::vector<double> turned(c.x.size());
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < d; ++j) {
+        turned[static_cast<std::size_t>(i)] +=
+            r(i % d, j) * c.x[static_cast<std::size_t>(i / d * d + j)];
+      }
+    }
+    const std::vector<double> g = Outputs(*s.row, turned, c.p);
+    std::vector<double> expected;
+    for (int i = 0; i < n; ++i) {
+      for (int j = i; j < n; ++j) {
+        double sum = 0;
+        for (int k = 0; k < d; ++k) {
+          for (int l = 0; l < d; ++l) {
+            sum += r(i % d, k) * At(f, n, i / d * d + k, j / d * d + l) * r(j % d, l);
+          }
+        }
+        expected.push_back(sum);
+      }
+    }
+    // An inexact turn perturbs x by u |x|, which the edges and then the angle between them magnify.
+    const double tolerance = rotation.exact ? 1 : 100 / c.conditioning;
+    if (rotation.exact || c.well_conditioned) {
+      worst = std::max(worst, AgainstRounding(g, expected, h, n, c.conditioning) / tolerance);
+    }
+  }
+  return worst;
+}
+
+double Translation(const Configuration& c, const EnergyRow& energy, const std::vector<double>& f,
+                   const std::vector<double>& h) {
+  const int n = energy.dofs, d = energy.dimension;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < d; ++k) {
+      double row = 0;
+      for (int j = k; j < n; j += d) row += At(f, n, i, j);
+      sum += row * row;
+    }
+  }
+  const double bound = kRatioBound * n * kUnit / c.conditioning * Scale(f, h);
+  return sum == 0 ? 0 : Infinite(std::sqrt(sum) / bound);
+}
+
+double OtherScales(const Subject& s, const Configuration& c, const std::vector<double>& f,
+                   const std::vector<double>& h) {
+  double worst = 0;
+  for (const double unit : {0x1p-900, 3e-160, 1e-20, 3.0, 1e70, 0x1p900}) {
+    Configuration scaled = c;
+    for (double& v : scaled.x) v *= unit;
+    for (std::size_t i = 0; i < scaled.p.size(); ++i) {
+      const int power = s.row->energy->parameters[i].length_power;
+      // Parameters of the tests' energies have squares of lengths, which do not go that far.
+      if (power > 1 && (unit < 1e-70 || unit > 1e70)) return worst;
+      scaled.p[i] *= std::pow(unit, power);
+    }
+    // Rounding the scaled coordinates moves x as an inexact rotation does.
+    const bool exact = std::frexp(unit, std::array<int, 1>().data()) == 0.5;
+    if (!exact && !c.well_conditioned) continue;
+    const double tolerance = exact ? 1 : 100 / c.conditioning;
+    worst = std::max(worst, AgainstRounding(Outputs(*s.row, scaled.x, scaled.p), f, h,
+                                            s.row->energy->dofs, c.conditioning) /
+                                tolerance);
+  }
+  return worst;
+}
+
+double Relabelled(const Subject& s, const Configuration& c, const std::vector<double>& f,
+                  const std::vector<double>& h) {
+  const EnergyRow& energy = *s.row->energy;
+  const int n = energy.dofs, d = energy.dimension;
+  const auto vertices = static_cast<std::size_t>(n / d);
+  double worst = 0;
+  for (std::size_t first = 0; first < energy.relabellings.size(); first += vertices) {
+    const auto old = [&](int i) {
+      return energy.relabellings[first + static_cast<std::size_t>(i / d)] * d + i % d;
+    };
+    std::vector<double> x(c.x.size()), expected;
+    for (int i = 0; i < n; ++i) {
+      x[static_cast<std::size_t>(i)] = c.x[static_cast<std::size_t>(old(i))];
+    }
+    for (int i = 0; i < n; ++i) {
+      for (int j = i; j < n; ++j) expected.push_back(At(f, n, old(i), old(j)));
+    }
+    // The frame starts at another edge now, whose angle may be far worse.
+    const double conditioning = std::min(c.conditioning, ConditioningOf(energy, x, c.p));
+    if (conditioning < 1e-7) continue;
+    worst = std::max(worst,
+                     AgainstRounding(Outputs(*s.row, x, c.p), expected, h, n, conditioning) / 2);
+  }
+  return worst;
+}
+
+double Rounding(const Subject& s, const Configuration& c) {
+  const KernelRow* const rows[] = {s.row};
+  Examiner examiner(*s.row->energy, rows);
+  examiner.Examine(c.x.data(), c.p.data(), Depth::kTruth);
+  if (!examiner.Configuration().active) return 0;
+  const auto rounding = examiner.Row(0).conditioned_rounding;
+  return rounding ? Infinite(*rounding / kRatioBound) : std::numeric_limits<double>::infinity();
+}
+
+double OffScalar(const Subject& s, const Configuration& c, const std::vector<double>& f) {
+  if (s.row->lanes == 1) return 0;
+  if (!s.scalar) return std::numeric_limits<double>::infinity();
+  // Every lane of a tile, each with another configuration beside it.
+  const auto lanes = static_cast<std::size_t>(s.row->lanes);
+  const auto tile = [&](const std::vector<double>& numbers, bool vary) {
+    std::vector<double> tiled;
+    for (double v : numbers) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        tiled.push_back(vary ? v * static_cast<double>(1 + lane) : v);
+      }
+    }
+    return tiled;
+  };
+  const std::vector<double> x = tile(c.x, true), p = tile(c.p, false);
+  std::vector<double> out(f.size() * lanes);
+  s.row->run(x.data(), p.data(), out.data(), 1);
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    std::vector<double> one;
+    for (double v : c.x) one.push_back(v * static_cast<double>(1 + lane));
+    const std::vector<double> expected = Outputs(*s.scalar, one, c.p);
+    for (std::size_t k = 0; k < f.size(); ++k) {
+      const double a = out[k * lanes + lane], b = expected[k];
+      if (std::bit_cast<std::uint64_t>(a) != std::bit_cast<std::uint64_t>(b) &&
+          !(std::isnan(a) && std::isnan(b))) {
+        return std::numeric_limits<double>::infinity();
+      }
+    }
+  }
+  return 0;
+}
+
+// Vertex over a triangle: the vertex at foot point beta e0 + gamma e1 and height l.
+Configuration VertexFaceCase(std::string name, std::vector<double> e0, std::vector<double> e1,
+                             double beta, double gamma, double l, double eps, double shift) {
+  const std::vector<double> c = {e0[1] * e1[2] - e0[2] * e1[1], e0[2] * e1[0] - e0[0] * e1[2],
+                                 e0[0] * e1[1] - e0[1] * e1[0]};
+  const double area = std::hypot(c[0], c[1], c[2]);
+  Configuration r{std::move(name), {}, {1, eps, 0}, false, 1};
+  r.x.resize(12);
+  for (std::size_t i = 0; i < 3; ++i) {
+    r.x[i] = shift + beta * e0[i] + gamma * e1[i] + l * c[i] / area;
+    r.x[3 + i] = shift + e0[i];
+    r.x[6 + i] = shift;
+    r.x[9 + i] = shift + e1[i];
+  }
+  return r;
+}
+
+std::vector<Configuration> DegenerateVertexFaces() {
+  const std::vector<double> ex = {1, 0, 0}, ey = {0, 1, 0}, e0 = {0.9, 0.2, -0.4},
+                            e1 = {-0.3, 0.8, 0.5};
+  std::vector<Configuration> cases = {
+      VertexFaceCase("l = 0 exactly", ex, ey, 0.25, 0.5, 0, 0.1, 0),
+      VertexFaceCase("l = 0 after rounding", e0, e1, 0.3, 0.4, 0, 0.1, 0),
+      VertexFaceCase("l = 1e-12", ex, ey, 0.25, 0.5, 1e-12, 0.1, 0),
+      VertexFaceCase("l = -1e-16", e0, e1, 0.25, 0.5, -1e-16, 0.1, 0),
+      VertexFaceCase("l = eps - 1e-15", ex, ey, 0.25, 0.5, 0.1 - 1e-15, 0.1, 0),
+      VertexFaceCase("vertex on a triangle vertex", ex, ey, 0, 0, 0, 0.1, 0),
+      VertexFaceCase("height 1e-4", ex, {0.5, 1e-4, 0}, 0.3, 0.3, 0.05, 0.1, 0),
+      VertexFaceCase("height 1e-7", ex, {0.5, 1e-7, 0}, 0.3, 0.3, 0.05, 0.1, 0),
+      VertexFaceCase("height 1e8", ex, {0.5, 1e8, 0}, 0.3, 0.3, 0.05, 0.1, 0),
+      VertexFaceCase("deep under a tiny triangle", {1e-6, 0, 0}, {0, 1e-6, 0}, 0.3, 0.3, -1, 0.1, 0),
+      VertexFaceCase("foot point far outside", ex, ey, 100, -50, 0.05, 0.1, 0),
+      VertexFaceCase("far from the origin", ex, ey, 0.25, 0.5, 0.0625, 0.125, 0x1p20),
+      VertexFaceCase("side flipped", e0, e1, 0.3, 0.4, -0.05, 0.1, 0),
+  };
+  cases.back().p[2] = -1;
+  return cases;
+}
+
+}  // namespace
+
+std::vector<double> Outputs(const KernelRow& row, const std::vector<double>& x,
+                        const std::vector<double>& p) {
+  std::vector<double> out(static_cast<std::size_t>(row.outputs));
+  RunOne(row, x.data(), p.data(), out.data());
+  return out;
+}
+
+double Violation(Property property, const Subject& s, const Configuration& c) {
+  const int n = s.row->energy->dofs;
+  const std::vector<double> f = Outputs(*s.row, c.x, c.p), h = Outputs(*s.exact, c.x, c.p);
+  const double bound = kRatioBound * n * kUnit;
+  switch (property) {
+    case Property::kFinite:
+      return AllFinite(f) ? 0 : std::numeric_limits<double>::infinity();
+    case Property::kPsd: {
+      const double norm = FrobeniusNorm(f);
+      return norm == 0 ? 0 : Infinite(-Eigenvalues(f).front() / (bound * norm));
+    }
+    case Property::kAccurate:
+      return Rounding(s, c);
+    case Property::kLanesEqualScalar:
+      return OffScalar(s, c, f);
+    case Property::kKeepsPsd:
+      return Eigenvalues(h).front() < -bound * FrobeniusNorm(h)
+                 ? 0
+                 : AgainstRounding(f, h, h, n, c.conditioning);
+    case Property::kMajorises: {
+      const double shortfall = -Eigenvalues(Difference(f, h)).front();
+      if (shortfall == 0) return 0;
+      return Infinite(shortfall / (bound / c.conditioning * Scale(f, h)));
+    }
+    case Property::kRigidMotion:
+      return RigidMotion(s, c, f, h);
+    case Property::kTranslation:
+      return Translation(c, *s.row->energy, f, h);
+    case Property::kScale:
+      return OtherScales(s, c, f, h);
+    case Property::kRelabelling:
+      return Relabelled(s, c, f, h);
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+std::vector<Configuration> Configurations(const EnergyRow& energy) {
+  constexpr int kDrawn = 40;
+  constexpr std::uint64_t kSeed = 20230801;
+  std::vector<Configuration> all;
+  for (const Distribution& distribution : AllDistributions()) {
+    if (!distribution.supports(energy.stencil)) continue;
+    Batch batch(energy);
+    batch.Draw(distribution, kSeed, 0, kDrawn);
+    for (int i = 0; i < kDrawn; ++i) {
+      Configuration c{std::string(distribution.name) + " " + std::to_string(i), {}, {}, false, 1};
+      c.x.assign(batch.X(i), batch.X(i) + energy.dofs);
+      c.p.assign(batch.P(i), batch.P(i) + energy.parameters.size());
+      all.push_back(c);
+    }
+  }
+  for (Configuration& c : all) {
+    const auto* reference = reference::FindEnergy<double>(energy.name);
+    const double length =
+        reference && reference->length ? reference->length(c.x.data(), c.p.data()) : 1;
+    c.conditioning = ConditioningOf(energy, c.x, c.p);
+    c.well_conditioned = c.conditioning > 0.1 && std::abs(length) > 0.01;
+  }
+  if (energy.stencil == "vertex_face") {
+    for (Configuration& c : DegenerateVertexFaces()) {
+      c.conditioning = ConditioningOf(energy, c.x, c.p);
+      all.push_back(c);
+    }
+  }
+  return all;
+}
+
+}  // namespace definite::testing

@@ -1,0 +1,271 @@
+// The kernels' own bodies: over float128 against the reference, and at the edges of their domain.
+
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/float128.hpp>
+#include <cmath>
+#include <limits>
+
+#include "all_filters.hpp"
+#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/figures.hpp"
+#include "kernels/energies/collision_signed.hpp"
+#include "reference/oracle.hpp"
+#include "tests/test_energies.hpp"
+
+namespace definite {
+namespace {
+
+using reference::Quad;
+using SignedVertexFace = CollisionSigned<VertexFace, Quadratic>;
+
+constexpr const char* kSignedVertexFace = "collision/vertex_face/signed/quadratic";
+
+std::vector<double> RunRow(const std::string& filter, const std::vector<double>& x,
+                           const std::vector<double>& p) {
+  const KernelRow* row = FindKernel(std::string(kSignedVertexFace) + "/" + filter);
+  std::vector<double> out(static_cast<std::size_t>(row->outputs));
+  RunOne(*row, x.data(), p.data(), out.data());
+  return out;
+}
+
+// Vertex at height z over the corner (0.25, 0.25) of the unit triangle in the xy plane.
+std::vector<double> Above(double z) { return {0.25, 0.25, z, 0, 0, 0, 1, 0, 0, 0, 1, 0}; }
+
+template <int D>
+Quad RelativeError(const PackedSym<Quad, D>& f, const reference::Matrix<Quad>& m) {
+  Quad distance = 0, norm = 0;
+  int k = 0;
+  for (int i = 0; i < D; ++i) {
+    for (int j = i; j < D; ++j, ++k) {
+      distance += (f.a[k] - m(i, j)) * (f.a[k] - m(i, j));
+      norm += m(i, j) * m(i, j);
+    }
+  }
+  return sqrt(distance / norm);
+}
+
+template <class E, class Check>
+void ForDrawn(const std::string& distribution, int count, Check check) {
+  const EnergyRow* energy = FindKernel(E::Name() + "/none/f64")->energy;
+  Batch batch(*energy);
+  batch.Draw(*FindDistribution(distribution), 7, 0, count);
+  for (int i = 0; i < count; ++i) {
+    Vec<Quad, E::kDofs> x;
+    Vec<Quad, E::kParams> p;
+    for (int k = 0; k < E::kDofs; ++k) x[k] = batch.X(i)[k];
+    for (int k = 0; k < E::kParams; ++k) p[k] = batch.P(i)[k];
+    reference::Truth<Quad> truth(*reference::FindEnergy<Quad>(E::Name()), batch.X(i), batch.P(i));
+    if (truth.Active()) check(x, p, truth);
+  }
+}
+
+// The formulas are those of the reference: in float128 only rounding is left, about 1e-34 / sin^2.
+template <class F>
+void ExpectDefined(const std::string& distribution) {
+  const auto* definition = reference::FindFilter<Quad>(F::kName);
+  int checked = 0;
+  ForDrawn<SignedVertexFace>(distribution, 40, [&](const auto& x, const auto& p, auto& truth) {
+    EXPECT_LT(RelativeError(F::template Apply<SignedVertexFace>(x, p), definition->define(truth)),
+              1e-28)
+        << F::kName;
+    ++checked;
+  });
+  EXPECT_GE(checked, 20);
+}
+
+TEST(SignedVertexFace, HasTheReferencesHessianInFloat128) {
+  for (const char* d : {"paper", "normal", "active"}) ExpectDefined<None>(d);
+}
+TEST(SignedVertexFace, IsClampedInTheFrameInFloat128) {
+  for (const char* d : {"paper", "normal", "active"}) ExpectDefined<Analytic>(d);
+}
+TEST(SignedVertexFace, IsClampedAlikeByThePrintedFormulasInFloat128) {
+  for (const char* d : {"paper", "normal", "active"}) ExpectDefined<AnalyticPrinted>(d);
+}
+TEST(SignedVertexFace, HasTheReferencesCurvatureInFloat128) {
+  for (const char* d : {"paper", "normal", "active"}) ExpectDefined<GaussNewton>(d);
+}
+
+TEST(SignedVertexFace, HasTheReferencesValueAndGradientInFloat128) {
+  ForDrawn<SignedVertexFace>("active", 40, [](const auto& x, const auto& p, auto& truth) {
+    EXPECT_LT(abs(SignedVertexFace::Value(x, p) - truth.Value()), 1e-32);
+    const auto gradient = SignedVertexFace::Gradient(x, p);
+    for (int k = 0; k < 12; ++k) EXPECT_LT(abs(gradient[k] - truth.Gradient()[k]), 1e-30);
+  });
+}
+
+TEST(SignedVertexFace, HasANormalOppositeToTheCounterClockwiseOne) {
+  const std::vector<double> x = Above(0.5), p = {1, 1, 0};
+  double value;
+  FindKernel(std::string(kSignedVertexFace) + "/none/f64")->energy->value(x.data(), p.data(),
+                                                                         &value, 1);
+  EXPECT_DOUBLE_EQ(value, 1.5 * 1.5);  // l = -0.5
+}
+
+TEST(SignedVertexFace, TakesItsSideFromTheParameter) {
+  const EnergyRow* energy = FindKernel(std::string(kSignedVertexFace) + "/none/f64")->energy;
+  const std::vector<double> x = Above(0.5);
+  for (const auto& [side, l] : {std::pair(1., -0.5), {0., -0.5}, {-1., 0.5}}) {
+    const std::vector<double> p = {1, 1, side};
+    double value;
+    energy->value(x.data(), p.data(), &value, 1);
+    EXPECT_DOUBLE_EQ(value, (l - 1) * (l - 1)) << side;
+  }
+}
+
+TEST(SignedVertexFace, IsZeroWhereInactive) {
+  const std::vector<double> x = Above(-0.5), p = {1, 0.5, 0};  // l = eps
+  for (const char* filter : {"none/f64", "analytic/f64", "gauss_newton/f64", "numeric/f64",
+                             "analytic/f64x8", "none/f64x8", "gauss_newton/f64x8"}) {
+    EXPECT_TRUE(AllZero(RunRow(filter, x, p))) << filter;
+  }
+}
+
+TEST(SignedVertexFace, IsZeroAndCountedOutsideTheDomain) {
+  const EnergyRow* energy = FindKernel(std::string(kSignedVertexFace) + "/none/f64")->energy;
+  const std::vector<std::vector<double>> outside = {
+      {0.2, 0.1, 0.3, 0, 0, 0, 1, 0, 0, 2, 0, 0},        // collinear
+      {0.2, 0.1, 0.3, 0, 0, 0, 1, 0, 0, 2, 1e-9, 0},     // nearly
+      {0.2, 0.1, 0.3, 1, 0, 0, 1, 0, 0, 0, 1, 0},        // an edge of length zero
+      {0.2, 0.1, 0.3, 1, 0, 0, 1, 1e-200, 0, 0, 1, 0},   // an edge too short
+      {1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3},              // one point
+  };
+  const std::vector<double> p = {1, 10, 0};
+  for (const std::vector<double>& x : outside) {
+    double where[3];
+    energy->classify(x.data(), p.data(), where, 1);
+    EXPECT_EQ(where[0], 0);
+    EXPECT_EQ(where[1], 0);
+    for (const char* filter : {"none/f64", "analytic/f64", "gauss_newton/f64", "numeric/f64",
+                               "analytic/f64x8", "none/f64x8", "gauss_newton/f64x8"}) {
+      EXPECT_TRUE(AllZero(RunRow(filter, x, p))) << filter;
+    }
+  }
+}
+
+TEST(SignedVertexFace, PassesNaNOn) {
+  for (std::size_t k = 0; k < 12; ++k) {
+    std::vector<double> x = Above(0.01);
+    x[k] = std::numeric_limits<double>::quiet_NaN();
+    for (const char* filter : {"none/f64", "analytic/f64", "gauss_newton/f64", "numeric/f64",
+                               "analytic/f64x8", "none/f64x8", "gauss_newton/f64x8"}) {
+      EXPECT_FALSE(AllFinite(RunRow(filter, x, {1, 0.1, 0}))) << filter << " x" << k;
+    }
+  }
+}
+
+TEST(SignedVertexFace, WorksFromSubnormalToHugeLengths) {
+  const std::vector<double> p = {1, 0.5, 0};
+  const std::vector<double> x = {0.3, 0.2, 0.1, 0.9, 0.1, 0.2, 0.1, 0.3, 0.1, 0.2, 0.8, 0.4};
+  const std::vector<double> expected = RunRow("analytic/f64", x, p);
+  for (int exponent : {-1000, -900, -300, 300, 900, 1020}) {
+    std::vector<double> scaled = x;
+    for (double& v : scaled) v = std::ldexp(v, exponent);
+    const std::vector<double> eps = {1, std::ldexp(0.5, exponent), 0};
+    for (const char* filter : {"analytic/f64", "analytic/f64x8"}) {
+      EXPECT_EQ(RunRow(filter, scaled, eps), expected) << exponent;
+    }
+  }
+  // Subnormal coordinates keep few digits; the pair that they do give is filtered as well as ever.
+  std::vector<double> tiny = x;
+  for (double& v : tiny) v = std::ldexp(v, -1062);
+  const std::vector<double> f = RunRow("analytic/f64", tiny, {1, std::ldexp(0.5, -1062), 0});
+  EXPECT_TRUE(IsPsd(f));
+  EXPECT_LT(RelativeDistance(f, expected), 0.1);
+}
+
+TEST(PrintedFormulas, GiveNaNAtZeroLengthAndTheDefaultDoesNot) {
+  const std::vector<double> x = Above(0), p = {1, 0.1, 0};
+  for (const char* scalar : {"/f64", "/f64x8"}) {
+    for (double v : RunRow(std::string("analytic_printed") + scalar, x, p)) {
+      EXPECT_TRUE(std::isnan(v) || v == 0);
+    }
+    EXPECT_FALSE(AllFinite(RunRow(std::string("analytic_printed") + scalar, x, p)));
+    EXPECT_TRUE(AllFinite(RunRow(std::string("analytic") + scalar, x, p)));
+    EXPECT_FALSE(AllZero(RunRow(std::string("analytic") + scalar, x, p)));
+  }
+}
+
+// An energy that lives in the tests: value, gradient and modes agree, by central differences.
+template <class E>
+void ExpectConsistent(const std::vector<double>& x0, const std::vector<double>& p0) {
+  Vec<Quad, E::kDofs> x;
+  Vec<Quad, E::kParams> p;
+  for (int k = 0; k < E::kDofs; ++k) x[k] = x0[static_cast<std::size_t>(k)];
+  for (int k = 0; k < E::kParams; ++k) p[k] = p0[static_cast<std::size_t>(k)];
+  const Quad step = 1e-11;  // the error, step^2 and 1e-34/step, is then about 1e-22
+  const auto gradient = E::Gradient(x, p);
+  const auto hessian = None::Apply<E>(x, p);
+  for (int j = 0; j < E::kDofs; ++j) {
+    auto above = x, below = x;
+    above[j] += step;
+    below[j] -= step;
+    EXPECT_LT(abs((E::Value(above, p) - E::Value(below, p)) / (2 * step) - gradient[j]), 1e-18);
+    const auto g1 = E::Gradient(above, p), g0 = E::Gradient(below, p);
+    for (int i = 0; i <= j; ++i) {
+      const Quad h = hessian.a[i * E::kDofs - i * (i - 1) / 2 + j - i];
+      EXPECT_LT(abs((g1[i] - g0[i]) / (2 * step) - h), 1e-18) << i << " " << j;
+    }
+  }
+}
+
+TEST(Interface, HoldsAStrandBendingEnergy) {
+  static_assert(EnergyOver<testing::StrandBend, double>);
+  static_assert(EnergyOver<testing::StrandBend, Lanes<double, kNativeLanes>>);
+  static_assert(!OffersSet<testing::StrandBend, double, Set::kPrinted>);
+  ExpectConsistent<testing::StrandBend>({0.3, 1.1, -0.2, 0, 0.1, 0.2, 1.2, -0.4, 0.5}, {2, 0.6, 0.8});
+  ExpectConsistent<testing::StrandBend>({-1, 0.2, 0.1, 0, 0, 0, 1.2, 0.4, 0.5}, {1, -0.8, 0.6});
+}
+
+TEST(Interface, HoldsATriangleWithACoupledScalingBlock) {
+  static_assert(EnergyOver<testing::TriangleArap, double>);
+  static_assert(EnergyOver<testing::TriangleArap, Lanes<double, kNativeLanes>>);
+  ExpectConsistent<testing::TriangleArap>({0.1, 0.2, 1.3, 0.4, -0.2, 0.9}, {1.5, 0.7});
+  ExpectConsistent<testing::TriangleArap>({0.1, 0.2, 0.5, 0.1, 0.2, 0.4}, {0, 1});
+}
+
+TEST(Scaling, ByAPowerOfTwoBringsANumberBetweenTwoAndFour) {
+  for (double m : {0x1p-1022, 1e-300, 0.3, 1.0, 1.9999, 2.0, 1e300, 0x1.fffffp1023}) {
+    for (double scaled : {m * InversePowerOfTwo(m),
+                          static_cast<double>(Quad(m) * InversePowerOfTwo(Quad(m)))}) {
+      EXPECT_GE(scaled, 2);
+      EXPECT_LT(scaled, 4);
+    }
+    double lanes[kNativeLanes];
+    InversePowerOfTwo(Lanes<double, kNativeLanes>(m)).Store(lanes);
+    for (double v : lanes) EXPECT_EQ(v, InversePowerOfTwo(m));
+  }
+}
+
+TEST(Lanes, ComputeWhatScalarsDo) {
+  using L = Lanes<double, kNativeLanes>;
+  double a[kNativeLanes], b[kNativeLanes], out[kNativeLanes];
+  for (int i = 0; i < kNativeLanes; ++i) {
+    a[i] = 0.7 * i - 1.3;
+    b[i] = 2.9 - 0.45 * i * i;
+  }
+  const L x = L::Load(a), y = L::Load(b);
+  const auto expect = [&](const L& lanes, auto scalar) {
+    lanes.Store(out);
+    for (int i = 0; i < kNativeLanes; ++i) {
+      const double expected = scalar(a[i], b[i]);
+      EXPECT_TRUE(out[i] == expected || (std::isnan(out[i]) && std::isnan(expected)));
+    }
+  };
+  expect(x + y, [](double p, double q) { return p + q; });
+  expect(x - y, [](double p, double q) { return p - q; });
+  expect(x * y, [](double p, double q) { return p * q; });
+  expect(x / y, [](double p, double q) { return p / q; });
+  expect(-x, [](double p, double) { return -p; });
+  expect(Abs(x), [](double p, double) { return std::fabs(p); });
+  expect(Sqrt(x), [](double p, double) { return std::sqrt(p); });
+  expect(MulAdd(x, y, x), [](double p, double q) { return std::fma(p, q, p); });
+  expect(Max(x, y), [](double p, double q) { return p > q ? p : q; });
+  expect(Select(x < y, x, y), [](double p, double q) { return p < q ? p : q; });
+  expect(Select((x <= y) | (y > x), x, y), [](double p, double q) { return p <= q ? p : q; });
+  expect(Select(x >= y, x, y), [](double p, double q) { return p >= q ? p : q; });
+}
+
+}  // namespace
+}  // namespace definite
