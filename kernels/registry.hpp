@@ -68,15 +68,12 @@ DEFINITE_INLINE void ForTiles(const double* x, const double* p, double* out, lon
 
 template <class E, class F, class Tile>
 void RunFilter(const double* x, const double* p, double* out, long tiles) {
-  using Packed = PackedSym<typename Tile::Value, E::kDofs>;
-  constexpr int kSize = Packed::kSize;
+  constexpr int kSize = PackedSym<typename Tile::Value, E::kDofs>::kSize;
   ForTiles<E, Tile, kSize>(x, p, out, tiles,
-                        [](const auto& xs, const auto& ps, auto store)
-                            __attribute__((always_inline)) {
-                              const Packed h = F::template Apply<E>(xs, ps);
-#pragma GCC unroll 128
-                              for (int i = 0; i < kSize; ++i) store(i, h.a[i]);
-                            });
+                           [](const auto& xs, const auto& ps, auto store)
+                               __attribute__((always_inline)) {
+                                 ForPacked(F::template Apply<E>(xs, ps), store);
+                               });
 }
 
 template <class E>

@@ -20,7 +20,7 @@ struct Spoilt {
 
   template <class E, class T>
   static PackedSym<T, E::kDofs> Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    PackedSym<T, E::kDofs> f = Analytic::Apply<E>(x, p);
+    PackedSym<T, E::kDofs> f = ToPacked(Analytic::Apply<E>(x, p));
     Spoil::Do(f, x);
     return f;
   }

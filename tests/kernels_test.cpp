@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "all_filters.hpp"
+#include "benchmarks/hand_fused.hpp"
 #include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/figures.hpp"
 #include "kernels/energies/collision_signed.hpp"
@@ -66,7 +67,7 @@ void ExpectDefined(const std::string& distribution) {
   const auto* definition = reference::FindFilter<Quad>(F::kName);
   int checked = 0;
   ForDrawn<SignedVertexFace>(distribution, 40, [&](const auto& x, const auto& p, auto& truth) {
-    EXPECT_LT(RelativeError(F::template Apply<SignedVertexFace>(x, p), definition->define(truth)),
+    EXPECT_LT(RelativeError(ToPacked(F::template Apply<SignedVertexFace>(x, p)), definition->define(truth)),
               1e-28)
         << F::kName;
     ++checked;
@@ -187,6 +188,16 @@ TEST(PrintedFormulas, GiveNaNAtZeroLengthAndTheDefaultDoesNot) {
   }
 }
 
+TEST(HandFused, GivesTheBitsOfTheRow) {
+  const KernelRow* row = FindKernel(std::string(kSignedVertexFace) + "/analytic/f64x8");
+  Batch batch(*row->energy);
+  batch.Draw(*FindDistribution("active"), 3, 0, 64);
+  std::vector<double> by_hand(64 * 78), by_row(64 * 78);
+  HandFusedAnalytic(batch.TilesX(8, 0), batch.TilesP(8, 0), by_hand.data(), 8);
+  row->run(batch.TilesX(8, 0), batch.TilesP(8, 0), by_row.data(), 8);
+  EXPECT_EQ(by_hand, by_row);
+}
+
 // An energy that lives in the tests: value, gradient and modes agree, by central differences.
 template <class E>
 void ExpectConsistent(const std::vector<double>& x0, const std::vector<double>& p0) {
@@ -196,7 +207,7 @@ void ExpectConsistent(const std::vector<double>& x0, const std::vector<double>& 
   for (int k = 0; k < E::kParams; ++k) p[k] = p0[static_cast<std::size_t>(k)];
   const Quad step = 1e-11;  // the error, step^2 and 1e-34/step, is then about 1e-22
   const auto gradient = E::Gradient(x, p);
-  const auto hessian = None::Apply<E>(x, p);
+  const auto hessian = ToPacked(None::Apply<E>(x, p));
   for (int j = 0; j < E::kDofs; ++j) {
     auto above = x, below = x;
     above[j] += step;

@@ -12,35 +12,35 @@ namespace definite {
 
 namespace {
 
-// Levenshtein's distance.
-std::size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
+// Levenshtein's distance from the nearest name that the glob matches; only * is special.
+std::size_t EditDistance(std::string_view glob, std::string_view name) {
+  std::vector<std::size_t> row(name.size() + 1);
   std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
+  for (const char c : glob) {
+    const std::size_t step = c == '*' ? 0 : 1;
+    std::size_t diagonal = row[0];
+    row[0] += step;
+    for (std::size_t j = 0; j < name.size(); ++j) {
       const std::size_t above = row[j + 1];
-      row[j + 1] = std::min({above + 1, row[j] + 1, diagonal + (a[i] != b[j])});
+      const std::size_t right = row[j] + step;
+      row[j + 1] = std::min({above + step, right, diagonal + (c == name[j] ? 0 : step)});
       diagonal = above;
     }
   }
   return row.back();
 }
 
-// "did you mean": the names nearest to a word, three at most.
-std::string NearNames(std::string_view word, std::vector<std::string> names) {
-  std::ranges::stable_sort(names, {}, [&](const std::string& n) { return EditDistance(word, n); });
+// The names nearest to a word, or that have something near it within them; three at most.
+std::string NearNames(std::string_view word) {
+  std::vector<std::string> names;
+  for (const KernelRow& row : AllKernels()) names.push_back(row.name);
+  const std::string glob = fmt::format("*{}*", word);
+  std::ranges::stable_sort(names, {}, [&](const std::string& n) { return EditDistance(glob, n); });
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(3, names.size()); ++i) {
     text += "\n  " + names[i];
   }
   return text;
-}
-
-std::vector<std::string> RowNames() {
-  std::vector<std::string> names;
-  for (const KernelRow& row : AllKernels()) names.push_back(row.name);
-  return names;
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs
     };
     if (std::ranges::none_of(AllKernels(), matches)) {
       throw UsageError(fmt::format("--kernels '{}': no row has such a name; the nearest are:{}",
-                                   glob, NearNames(glob, RowNames())));
+                                   glob, NearNames(glob)));
     }
   }
   for (const KernelRow& row : AllKernels()) {
@@ -95,7 +95,7 @@ std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs
 const KernelRow& RowNamed(const std::string& name) {
   if (const KernelRow* row = FindKernel(name)) return *row;
   throw UsageError(fmt::format("--kernel '{}': no such row; the nearest are:{}", name,
-                               NearNames(name, RowNames())));
+                               NearNames(name)));
 }
 
 const Distribution& DistributionNamed(const std::string& name) {
@@ -105,6 +105,29 @@ const Distribution& DistributionNamed(const std::string& name) {
     known += fmt::format("\n  {:<8} {}", d.name, d.description);
   }
   throw UsageError(fmt::format("--distribution '{}': expected one of{}", name, known));
+}
+
+CLI::Option* AddKernelsOption(CLI::App& command, std::vector<std::string>& globs) {
+  return command
+      .add_option("--kernels", globs,
+                  "Rows with such a name, * crosses / (default: all; may be repeated)")
+      ->type_name("GLOB")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void AddDistributionOption(CLI::App& command, std::string& name) {
+  std::string known;
+  for (const Distribution& d : AllDistributions()) {
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", d.name);
+  }
+  command.add_option("--distribution", name, fmt::format("{} (default: {})", known, name))
+      ->type_name("NAME");
+}
+
+void AddSeedOption(CLI::App& command, std::string& seed) {
+  command.add_option("--seed", seed, fmt::format("Seed of the configurations (default: {})", seed))
+      ->type_name("N");
 }
 
 }  // namespace definite

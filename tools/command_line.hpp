@@ -33,6 +33,11 @@ std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs
 const KernelRow& RowNamed(const std::string& name);
 const Distribution& DistributionNamed(const std::string& name);
 
+// Options that several subcommands have.
+CLI::Option* AddKernelsOption(CLI::App& command, std::vector<std::string>& globs);
+void AddDistributionOption(CLI::App& command, std::string& name);
+void AddSeedOption(CLI::App& command, std::string& seed);
+
 // Registers a subcommand with its options; `exit_code` gets what it returns. One for each file.
 void AddSweep(CLI::App& app, int& exit_code);
 void AddReplay(CLI::App& app, int& exit_code);

@@ -1,6 +1,10 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
+#include <memory>
 
 #include "benchmarks/harness/machine.hpp"
 #include "benchmarks/harness/progress.hpp"
@@ -12,14 +16,48 @@ namespace {
 
 std::vector<std::string> command_words;
 
-int Main(int argc, char** argv) {
-  command_words.assign(argv, argv + argc);
-  CatchInterrupts();
+// Each option with the name of its value and nothing else.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(24); }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    return option->get_type_size() ? " " + option->get_type_name() : "";
+  }
+};
+
+int Fail(const std::string& message) {
+  std::fputs(fmt::format("definite: {}\n", message).c_str(), stderr);
+  return kUsage;
+}
+
+// What is wrong with the words of the command line. A word that is not understood comes first: it
+// often explains what is missing.
+std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::vector<std::string> unknown = app.remaining(true);
+  std::string what = error.what();
+  if (chosen.empty()) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    what = fmt::format("{}expected a subcommand: {}",
+                       unknown.empty() ? "" : fmt::format("'{}': ", unknown.front()),
+                       fmt::join(names, ", "));
+  } else if (!unknown.empty()) {
+    what = fmt::format("'{}': {} has no such option or argument", unknown.front(),
+                       chosen.front()->get_name());
+  }
+  return fmt::format("{}\nTry 'definite {}--help'.", what,
+                     chosen.empty() ? "" : chosen.front()->get_name() + " ");
+}
+
+int Run(int argc, char** argv) {
   CLI::App app("definite measures the filters that make energy Hessians positive semidefinite.",
                "definite");
   app.require_subcommand(1);
-  app.set_help_all_flag("--help-all", "Help of all commands");
-  app.set_version_flag("--version", [] { return DescribeBuild().dump(2); });
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_help_flag("-h,--help", "Print this help");
+  app.set_version_flag("--version", [] { return DescribeBuild().dump(2); },
+                       "Print the commit and how it was built");
   app.footer(
       "Examples:\n"
       "  definite list --long\n"
@@ -35,14 +73,19 @@ int Main(int argc, char** argv) {
   } catch (const CLI::Success& done) {  // --help, --version
     return app.exit(done);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "definite: {}\nTry 'definite --help'.\n", error.what());
-    return kUsage;
-  } catch (const UsageError& error) {
-    fmt::print(stderr, "definite: {}\n", error.what());
-    return kUsage;
+    return Fail(Explain(app, error));
   } catch (const std::exception& error) {
-    fmt::print(stderr, "definite: {}\n", error.what());
-    return kUsage;
+    return Fail(error.what());
+  }
+  return exit_code;
+}
+
+int Main(int argc, char** argv) {
+  command_words.assign(argv, argv + argc);
+  CatchInterrupts();
+  const int exit_code = Run(argc, argv);
+  if (std::fflush(stdout) != 0) {
+    return Fail(fmt::format("standard output: cannot write it: {}", std::strerror(errno)));
   }
   return exit_code;
 }

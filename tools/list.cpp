@@ -16,11 +16,13 @@ void AddList(CLI::App& app, int&) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("list", "Prints the full name of each row, one a line");
-  command->add_option("--kernels", options->kernels, "Rows, as globs in which * crosses /")
-      ->capture_default_str();
-  command->add_flag("--long", options->long_form, "Sources and parameters too");
+  CLI::Option* kernels = AddKernelsOption(*command, options->kernels);
+  CLI::Option* long_form =
+      command->add_flag("--long", options->long_form, "Sources and parameters too");
   command->add_flag("--promises", options->promises,
-                    "Instead: what each filter promises, and what it is exempt from and why");
+                    "Instead what filters promise, and their exemptions")
+      ->excludes(kernels)
+      ->excludes(long_form);
   command->footer("Examples:\n  definite list\n  definite list --long --kernels '*/analytic/*'");
   command->callback([options] {
     if (options->promises) {

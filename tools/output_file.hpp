@@ -6,14 +6,15 @@
 
 namespace definite {
 
-// Opens at once, so that a path that cannot be written fails before the long work, under a
-// temporary name beside the path; Commit writes and renames. A path that exists and is not a
-// regular file (a pipe, /dev/null) is written directly, "-" is standard output.
+// Commit writes to a temporary name beside the path and renames. The constructor tries that name,
+// so that a path that cannot be written fails before the long work, and leaves nothing behind. A
+// path that exists and is not a regular file (a pipe, /dev/null) is opened at once and written
+// directly, "-" is standard output.
 class OutputFile {
  public:
   // Throws UsageError if the file cannot be created.
   OutputFile(std::string option, std::string path);
-  ~OutputFile();  // removes the temporary file if there was no Commit
+  ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
@@ -22,9 +23,12 @@ class OutputFile {
   void Commit(const std::string& content);
 
  private:
+  void CreateTemporary();
+  void RemoveTemporary();
   [[noreturn]] void Fail(const std::string& doing) const;
 
-  std::string option_, path_, temporary_;
+  std::string option_, path_;
+  std::string target_, temporary_;  // a temporary file that exists
   int descriptor_ = -1;
 };
 

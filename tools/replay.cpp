@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <memory>
 
 #include "benchmarks/harness/batch.hpp"
@@ -63,13 +66,20 @@ std::string Show(const std::optional<double>& value) {
   return value ? fmt::format("{:.3g}", *value) : "-";
 }
 
+// With a common power of ten, so that twelve columns fit.
 void PrintMatrix(const KernelRow& row, const std::vector<double>& packed) {
-  fmt::print("\n{}\n", row.name);
+  double largest = 0;
+  for (double a : packed) {
+    if (std::isfinite(a)) largest = std::max(largest, std::abs(a));
+  }
+  const int exponent = largest > 0 ? static_cast<int>(std::floor(std::log10(largest))) : 0;
+  const double unit = std::pow(10.0, exponent);
+  fmt::print("\n{}, in units of 1e{}\n", row.name, exponent);
   const int n = row.energy->dofs;
   std::size_t k = 0;
   for (int i = 0; i < n; ++i) {
     fmt::print("{:{}}", "", 8 * i);
-    for (int j = i; j < n; ++j) fmt::print("{:8.3g}", packed[k++]);
+    for (int j = i; j < n; ++j) fmt::print("{:8.3f}", packed[k++] / unit);
     fmt::print("\n");
   }
 }
@@ -94,7 +104,7 @@ void Print(const Replay& replay, const Examiner& examiner) {
   fmt::print("eigenvalues of the exact Hessian (float128):\n");
   for (double value : replay.eigenvalues) fmt::print("  {:.17g}\n", value);
   fmt::print("\n{:<24}{:>10}{:>9}{:>10}{:>10}{:>10}{:>10}  {}\n", "row", "distance", "excess",
-             "rounding", "defect", "majorises", "relabel.", "verdict");
+             "rounding", "defect", "majorises", "relab.", "verdict");
   for (std::size_t r = 0; r < replay.rows.size(); ++r) {
     const RowFigures& f = examiner.Row(r);
     fmt::print("{:<24}{:>10}{:>9}{:>10}{:>10}{:>10}{:>10}  {}\n",
@@ -104,7 +114,14 @@ void Print(const Replay& replay, const Examiner& examiner) {
                kVerdictNames[static_cast<std::size_t>(f.verdict)]);
   }
   for (std::size_t r = 0; r < replay.rows.size(); ++r) {
-    if (replay.rows[r]->lanes == 1) PrintMatrix(*replay.rows[r], replay.outputs[r]);
+    // Lanes that agree with the scalar row bit for bit are not shown again.
+    std::size_t same = 0;
+    while (replay.rows[same]->filter != replay.rows[r]->filter ||
+           std::memcmp(replay.outputs[same].data(), replay.outputs[r].data(),
+                       replay.outputs[r].size() * sizeof(double)) != 0) {
+      ++same;
+    }
+    if (same == r) PrintMatrix(*replay.rows[r], replay.outputs[r]);
   }
 }
 
@@ -169,13 +186,15 @@ int RunReplay(const Options& options) {
 void AddReplay(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "replay", "Shows one configuration whole: inputs, exact eigenvalues, filters, verdicts");
-  command->add_option("--kernel", options->kernel, "Full name of a row")->required();
-  command->add_option("--distribution", options->distribution, "paper, normal or active")
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "Seed of the configurations")
-      ->capture_default_str();
-  command->add_option("--index", options->index, "Index of the configuration")->required();
+      "replay", "Shows one configuration whole: inputs, eigenvalues, filters, verdicts");
+  command->add_option("--kernel", options->kernel, "Full name of a row (required)")
+      ->type_name("NAME")
+      ->required();
+  AddDistributionOption(*command, options->distribution);
+  AddSeedOption(*command, options->seed);
+  command->add_option("--index", options->index, "Index of the configuration (required)")
+      ->type_name("N")
+      ->required();
   command->add_flag("--json", options->json, "As JSON, numbers as hex floats");
   command->footer(
       "Exit code 1 if the row asked for breaks one of its promises there.\n\nExample:\n"

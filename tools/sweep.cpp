@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -24,9 +26,8 @@ struct Options {
   std::string distribution = "active";
   std::string count = "1e7";
   std::string seed = "42";
-  std::string threads = "0";
-  std::string json;
-  bool threads_given = false, quick = false, no_timing = false;
+  std::optional<std::string> threads, json;
+  bool quick = false, no_timing = false;
 };
 
 SweepPlan PlanOf(const Options& options) {
@@ -35,9 +36,9 @@ SweepPlan PlanOf(const Options& options) {
   plan.distribution = &DistributionNamed(options.distribution);
   plan.count = options.quick ? kQuickCount : ParseCount("--count", options.count, 1);
   plan.seed = ParseCount("--seed", options.seed, 0);
-  plan.threads = options.threads_given
-                     ? static_cast<int>(ParseCount("--threads", options.threads, 1, 1024))
-                     : static_cast<int>(std::thread::hardware_concurrency());
+  plan.threads = static_cast<int>(options.threads
+                                      ? ParseCount("--threads", *options.threads, 1, 1024)
+                                      : std::max(1u, std::thread::hardware_concurrency()));
   plan.timing = !options.no_timing;
   std::erase_if(plan.rows, [&](const KernelRow* row) {
     return !plan.distribution->supports(row->energy->stencil);
@@ -52,18 +53,22 @@ SweepPlan PlanOf(const Options& options) {
 int RunSweepCommand(const Options& options) {
   const SweepPlan plan = PlanOf(options);
   std::optional<OutputFile> json;
-  if (!options.json.empty()) json.emplace("--json", options.json);
+  if (options.json) json.emplace("--json", *options.json);
 
   Progress progress(isatty(STDERR_FILENO) != 0);
   const SweepResult result = RunSweep(plan, progress);
 
-  if (json) json->Commit(ToJson(result, CommandWords()).dump() + "\n");
   if (options.json != "-") fmt::print("{}", ToTable(result));
   const std::string broken = BrokenPromises(result);
-  fmt::print(stderr, "{}", broken);
+  std::fputs(broken.c_str(), stderr);
+  if (json) {
+    // A path among the command's words need not be UTF-8.
+    json->Commit(ToJson(result, CommandWords())
+                     .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+                 "\n");
+  }
   if (result.partial) {
-    fmt::print(stderr, "definite: interrupted; what was complete by then is above{}\n",
-               json ? " and in the file, marked partial" : "");
+    std::fputs("definite: interrupted; the result is partial: what was complete by then\n", stderr);
     return kInterrupted;
   }
   return broken.empty() ? kOk : kBroken;
@@ -75,18 +80,19 @@ void AddSweep(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "sweep", "Times rows over drawn configurations, and checks what they give");
-  command->add_option("--kernels", options->kernels, "Rows, as globs in which * crosses /")
-      ->capture_default_str();
-  command->add_option("--distribution", options->distribution, "paper, normal or active")
-      ->capture_default_str();
-  command->add_option("--count", options->count, "Configurations: 1000, 1e7, 10M")
-      ->capture_default_str();
-  command->add_flag("--quick", options->quick, "The same as --count 1e5");
-  command->add_option("--seed", options->seed, "Seed of the configurations")
-      ->capture_default_str();
-  CLI::Option* threads =
-      command->add_option("--threads", options->threads, "Threads; default: all cores");
-  command->add_option("--json", options->json, "Write the whole result to FILE; - is standard output")
+  AddKernelsOption(*command, options->kernels);
+  AddDistributionOption(*command, options->distribution);
+  CLI::Option* count =
+      command
+          ->add_option("--count", options->count,
+                       fmt::format("Configurations, such as 1000, 10M (default: {})",
+                                   options->count))
+          ->type_name("N");
+  command->add_flag("--quick", options->quick, "The same as --count 1e5")->excludes(count);
+  AddSeedOption(*command, options->seed);
+  command->add_option("--threads", options->threads, "Threads (default: all cores)")
+      ->type_name("N");
+  command->add_option("--json", options->json, "Write the whole result to FILE, - is standard output")
       ->type_name("FILE");
   command->add_flag("--no-timing", options->no_timing, "Check only");
   command->footer(
@@ -98,10 +104,7 @@ void AddSweep(CLI::App& app, int& exit_code) {
       "  definite sweep --quick\n"
       "  definite sweep --kernels '*/analytic/*' --kernels '*/numeric/f64' --distribution paper\n"
       "  definite sweep --count 1e6 --threads 1 --json - | jq '.rows[].kernel'");
-  command->callback([options, threads, &exit_code] {
-    options->threads_given = threads->count() > 0;
-    exit_code = RunSweepCommand(*options);
-  });
+  command->callback([options, &exit_code] { exit_code = RunSweepCommand(*options); });
 }
 
 }  // namespace definite

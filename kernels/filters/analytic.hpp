@@ -15,10 +15,9 @@ struct Analytic {
   };
 
   template <class E, class T>
-  static DEFINITE_INLINE PackedSym<T, E::kDofs> Apply(const Vec<T, E::kDofs>& x,
-                                                      const Vec<T, E::kParams>& p) {
+  static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     // A NaN is not below zero, so it stays.
-    return Assemble(E::template HessianModes<Set::kFrame, Part::kPositive>(x, p),
+    return MapModes(E::template HessianModes<Set::kFrame, Part::kPositive>(x, p),
                     [](const T& lambda) { return Select(lambda < T(0.0), T(0.0), lambda); });
   }
 };

@@ -21,9 +21,8 @@ struct AnalyticPrinted {
 
   template <class E, class T>
     requires OffersSet<E, T, Set::kPrinted>
-  static DEFINITE_INLINE PackedSym<T, E::kDofs> Apply(const Vec<T, E::kDofs>& x,
-                                                      const Vec<T, E::kParams>& p) {
-    return Assemble(E::template HessianModes<Set::kPrinted, Part::kAll>(x, p),
+  static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+    return MapModes(E::template HessianModes<Set::kPrinted, Part::kAll>(x, p),
                     [](const T& lambda) { return Select(lambda < T(0.0), T(0.0), lambda); });
   }
 };

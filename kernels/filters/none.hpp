@@ -14,10 +14,8 @@ struct None {
   };
 
   template <class E, class T>
-  static DEFINITE_INLINE PackedSym<T, E::kDofs> Apply(const Vec<T, E::kDofs>& x,
-                                                      const Vec<T, E::kParams>& p) {
-    return Assemble(E::template HessianModes<Set::kFrame, Part::kAll>(x, p),
-                    [](const T& lambda) { return lambda; });
+  static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+    return E::template HessianModes<Set::kFrame, Part::kAll>(x, p);
   }
 };
 

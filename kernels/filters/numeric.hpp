@@ -21,7 +21,7 @@ struct Numeric {
     requires std::same_as<T, double>
   static PackedSym<T, E::kDofs> Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     constexpr int kD = E::kDofs;
-    PackedSym<double, kD> h = None::Apply<E>(x, p);
+    PackedSym<double, kD> h = ToPacked(None::Apply<E>(x, p));
     Eigen::Matrix<double, kD, kD> full;
     for (int i = 0, at = 0; i < kD; ++i) {
       for (int j = i; j < kD; ++j) full(j, i) = h.a[at++];  // the solver reads the lower triangle

@@ -49,17 +49,15 @@ struct SignedLength {
   template <class T>
   static DEFINITE_INLINE Frame<T> FrameOf(const Vec<T, kDofs>& x, const T& side) {
     auto [e0, e1, e2] = Stencil::EdgesOf(x);
-    T largest = Abs(e0[0]);
-#pragma GCC unroll 16
-    for (const Vec3<T>* e : {&e0, &e1, &e2}) {
-#pragma GCC unroll 16
-      for (int i = 0; i < 3; ++i) largest = Max(largest, Abs((*e)[i]));
-    }
+    T largest[3];  // of each coordinate; a chain of nine would be the longest path of the kernel
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) largest[i] = Max(Max(Abs(e0[i]), Abs(e1[i])), Abs(e2[i]));
+    const T magnitude = Max(Max(largest[0], largest[1]), largest[2]);
     Frame<T> f;
     // Subnormal lengths are lifted first: they have no exponent to read.
     constexpr double kSmallestNormal = 0x1p-1022;
-    f.lift = Select(largest < T(kSmallestNormal), T(0x1p54), T(1.0));
-    f.scale = InversePowerOfTwo(Max(largest * f.lift, T(kSmallestNormal)));
+    f.lift = Select(magnitude < T(kSmallestNormal), T(0x1p54), T(1.0));
+    f.scale = InversePowerOfTwo(Max(magnitude * f.lift, T(kSmallestNormal)));
 #pragma GCC unroll 16
     for (Vec3<T>* e : {&e0, &e1, &e2}) *e = f.scale * (f.lift * *e);
 

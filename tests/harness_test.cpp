@@ -1,0 +1,287 @@
+// The judge and the two passes.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/checked_pass.hpp"
+#include "benchmarks/harness/report.hpp"
+#include "benchmarks/harness/timed_pass.hpp"
+#include "tests/contracts.hpp"
+
+namespace definite {
+namespace {
+
+constexpr const char* kEnergy = "collision/vertex_face/signed/quadratic";
+
+const KernelRow& Row(const std::string& filter) {
+  return *FindKernel(std::string(kEnergy) + "/" + filter);
+}
+
+SweepPlan Plan(std::uint64_t count, int threads) {
+  SweepPlan plan;
+  for (const KernelRow& row : AllKernels()) plan.rows.push_back(&row);
+  plan.distribution = FindDistribution("active");
+  plan.count = count;
+  plan.threads = threads;
+  plan.timing = false;
+  return plan;
+}
+
+std::string RowsOf(const SweepResult& result) { return ToJson(result, {"test"})["rows"].dump(); }
+
+// Packed symmetric matrix of n rows with this diagonal.
+std::vector<double> Diagonal(std::vector<double> diagonal) {
+  std::vector<double> a;
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    for (std::size_t j = i; j < diagonal.size(); ++j) a.push_back(i == j ? diagonal[i] : 0);
+  }
+  return a;
+}
+
+TEST(Figures, CountOffDiagonalEntriesTwice) {
+  const std::vector<double> a = {3, 4, 0};  // [[3, 4], [4, 0]]
+  EXPECT_DOUBLE_EQ(FrobeniusNorm(a), std::sqrt(9.0 + 16 + 16));
+  EXPECT_DOUBLE_EQ(FrobeniusDistance(a, {{3, 0, 0}}), std::sqrt(32.0));
+  EXPECT_EQ(PackedRows(std::vector<double>(78)), 12);
+}
+
+TEST(Figures, CallAMatrixPsdUpToTheRatioBound) {
+  const double n = 4, slack = kRatioBound * n * kUnit;  // |F| is close to 1
+  EXPECT_TRUE(IsPsd(Diagonal({1, 0, 0, 0})));
+  EXPECT_TRUE(IsPsd(Diagonal({0, 0, 0, 0})));
+  EXPECT_TRUE(IsPsd(Diagonal({1, 0, 0, -0.9 * slack})));
+  EXPECT_FALSE(IsPsd(Diagonal({1, 0, 0, -1.1 * slack})));
+  EXPECT_FALSE(IsPsd(Diagonal({-1, 0, 0, 0})));
+  EXPECT_FALSE(IsPsd(Diagonal({1, std::nan(""), 0, 0})));
+  EXPECT_FALSE(IsPsd(Diagonal({1, std::numeric_limits<double>::infinity(), 0, 0})));
+}
+
+TEST(Figures, KnowEigenvalues) {
+  const std::vector<double> values = Eigenvalues(std::vector<double>{2, 1, 2});
+  EXPECT_NEAR(values[0], 1, 1e-15);
+  EXPECT_NEAR(values[1], 3, 1e-15);
+}
+
+TEST(Figures, TakeZeroOverZeroForZero) {
+  EXPECT_EQ(RelativeDistance(Diagonal({0, 0}), Diagonal({0, 0})), 0);
+  EXPECT_EQ(RelativeDistance(Diagonal({1, 0}), Diagonal({0, 0})),
+            std::numeric_limits<double>::infinity());
+}
+
+TEST(Tiles, ComeBackAsTheyWere) {
+  std::vector<double> numbers(3 * 16), tiled(3 * 16), back(3 * 16);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i);
+  ToTiles(numbers.data(), 3, 16, tiled.data());
+  EXPECT_EQ(tiled[1], 3);   // number 0 of configuration 1
+  EXPECT_EQ(tiled[8], 1);   // number 1 of configuration 0
+  EXPECT_EQ(tiled[24], 24);  // the second tile
+  FromTiles(tiled.data(), 3, 16, back.data());
+  EXPECT_EQ(back, numbers);
+}
+
+// Judges one output at one configuration, in place of what the row gives.
+class Judge : public ::testing::Test {
+ protected:
+  Judge() : batch_(*Row("none/f64").energy) {
+    batch_.Draw(*FindDistribution("active"), 1, 0, kTile);
+  }
+
+  RowFigures Of(const std::string& filter, const std::vector<double>& output,
+                Depth depth = Depth::kTruth) {
+    const KernelRow* const rows[] = {&Row(filter)};
+    Examiner examiner(*rows[0]->energy, rows);
+    const Packed outputs[] = {output};
+    const std::vector<double> h = Exact("none/f64"), nearest = Exact("numeric/f64");
+    examiner.Examine(batch_.X(0), batch_.P(0), h, nearest, outputs, depth);
+    return examiner.Row(0);
+  }
+  std::vector<double> Exact(const std::string& filter) {
+    std::vector<double> out(78);
+    RunOne(Row(filter), batch_.X(0), batch_.P(0), out.data());
+    return out;
+  }
+
+  Batch batch_;
+};
+
+TEST_F(Judge, PassesWhatIsRight) {
+  const RowFigures f = Of("analytic/f64", Exact("analytic/f64"));
+  EXPECT_EQ(f.verdict, Verdict::kPass);
+  EXPECT_TRUE(f.broken.empty());
+  EXPECT_TRUE(f.defined);
+  EXPECT_LT(*f.rounding, 2);
+  EXPECT_GT(*f.distance, 1e-4);
+  EXPECT_GT(*f.excess, 1);
+  EXPECT_GT(*f.relabelling, 1e-4);
+}
+
+TEST_F(Judge, FindsNearestAtDistanceZeroWithExcessOne) {
+  const RowFigures f = Of("numeric/f64", Exact("numeric/f64"));
+  EXPECT_LT(*f.distance, 1e-14);
+  EXPECT_NEAR(*f.excess, 1, 1e-12);
+}
+
+TEST_F(Judge, CallsNaNNonFinite) {
+  std::vector<double> f = Exact("analytic/f64");
+  f[5] = std::nan("");
+  const RowFigures figures = Of("analytic/f64", f);
+  EXPECT_EQ(figures.verdict, Verdict::kNonFinite);
+  EXPECT_EQ(figures.broken, std::vector{Property::kFinite});
+  EXPECT_FALSE(figures.distance);
+}
+
+TEST_F(Judge, CallsASilentZeroOne) {
+  const RowFigures f = Of("analytic/f64", std::vector<double>(78));
+  EXPECT_EQ(f.verdict, Verdict::kSilentZero);
+  EXPECT_FALSE(f.broken.empty());
+}
+
+TEST_F(Judge, CallsTheHessianNonPsdWithoutABrokenPromise) {
+  const RowFigures f = Of("none/f64", Exact("none/f64"));
+  EXPECT_EQ(f.verdict, Verdict::kNonPsd);
+  EXPECT_TRUE(f.broken.empty());
+  EXPECT_EQ(Of("analytic/f64", Exact("none/f64")).verdict, Verdict::kNonPsd);
+}
+
+TEST_F(Judge, CallsWhatIsOffItsDefinitionDegraded) {
+  std::vector<double> f = Exact("analytic/f64");
+  for (double& a : f) a *= 1 + 1e-9;
+  for (Depth depth : {Depth::kDefinition, Depth::kSpectral, Depth::kTruth}) {
+    const RowFigures figures = Of("analytic/f64", f, depth);
+    EXPECT_EQ(figures.verdict, Verdict::kDegraded);
+    EXPECT_EQ(figures.broken, std::vector{Property::kAccurate});
+    EXPECT_NEAR(*figures.rounding * 12 * kUnit, 1e-9, 1e-12);
+  }
+  EXPECT_EQ(Of("analytic/f64", f, Depth::kCheap).verdict, Verdict::kPass);
+}
+
+TEST_F(Judge, CallsGrowthDegraded) {
+  std::vector<double> f = Exact("analytic/f64");
+  for (double& a : f) a *= 100;
+  EXPECT_EQ(Of("analytic/f64", f, Depth::kCheap).verdict, Verdict::kDegraded);
+}
+
+TEST_F(Judge, SeesALossOfMajorisation) {
+  std::vector<double> f = Exact("analytic/f64");
+  for (double& a : f) a *= 0.5;
+  const RowFigures figures = Of("analytic/f64", f, Depth::kSpectral);
+  EXPECT_GT(*figures.majorises, 0.01);
+  EXPECT_NE(std::ranges::find(figures.broken, Property::kMajorises), figures.broken.end());
+}
+
+TEST_F(Judge, CallsAWrongGradientInconsistent) {
+  EnergyRow energy = *Row("none/f64").energy;
+  energy.gradient = [](const double*, const double*, double* out, long) {
+    std::fill_n(out, 12, 1.0);
+  };
+  const KernelRow* const rows[] = {&Row("analytic/f64")};
+  Examiner examiner(energy, rows);
+  examiner.Examine(batch_.X(0), batch_.P(0), Depth::kTruth);
+  EXPECT_EQ(examiner.Row(0).verdict, Verdict::kInconsistent);
+}
+
+TEST_F(Judge, CountsWhatIsOutsideTheDomain) {
+  const std::vector<double> x = {0.2, 0.1, 0.3, 0, 0, 0, 1, 0, 0, 2, 0, 0}, p = {1, 1, 0};
+  const KernelRow* const rows[] = {&Row("analytic/f64")};
+  Examiner examiner(*rows[0]->energy, rows);
+  examiner.Examine(x.data(), p.data(), Depth::kTruth);
+  EXPECT_FALSE(examiner.Configuration().in_domain);
+  EXPECT_EQ(examiner.Row(0).verdict, Verdict::kOutOfDomain);
+}
+
+TEST(CheckedPass, GivesTheSameBytesForAnyNumberOfThreads) {
+  Progress progress(false);
+  const std::string one = RowsOf(RunSweep(Plan(3001, 1), progress));
+  EXPECT_EQ(one, RowsOf(RunSweep(Plan(3001, 2), progress)));
+  EXPECT_EQ(one, RowsOf(RunSweep(Plan(3001, 7), progress)));
+  SweepPlan other = Plan(3001, 2);
+  other.seed = 43;
+  EXPECT_NE(one, RowsOf(RunSweep(other, progress)));
+}
+
+TEST(CheckedPass, CountsEveryConfigurationOnce) {
+  Progress progress(false);
+  const SweepResult result = RunSweep(Plan(1003, 3), progress);
+  for (const EnergyResult& energy : result.energies) {
+    EXPECT_EQ(energy.statistics.count, 1003u);
+    for (const RowResult& r : energy.rows) {
+      std::uint64_t verdicts = 0;
+      for (std::uint64_t n : r.statistics.verdicts) verdicts += n;
+      EXPECT_EQ(verdicts, energy.statistics.active);
+      EXPECT_EQ(r.statistics.defined + r.statistics.verdicts[3], energy.statistics.active);
+    }
+  }
+}
+
+TEST(CheckedPass, CoversAPrefixWhenInterrupted) {
+  Progress progress(false);
+  std::thread interrupt([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    InterruptForTest(true);
+  });
+  const SweepResult partial = RunSweep(Plan(1'000'000, 2), progress);
+  interrupt.join();
+  InterruptForTest(false);
+  EXPECT_TRUE(partial.partial);
+  const std::uint64_t count = partial.energies[0].statistics.count;
+  EXPECT_GT(count, 0u);
+  EXPECT_LT(count, 1'000'000u);
+  EXPECT_EQ(count % 256, 0u);
+}
+
+TEST(CheckedPass, LooksDeeperAtSamples) {
+  const std::uint64_t n = 10'000'000;
+  std::array<std::uint64_t, 4> seen{};
+  for (std::uint64_t i = 0; i < n; ++i) ++seen[static_cast<std::size_t>(DepthOf(i, n))];
+  EXPECT_EQ(seen[3], 10'000u);
+  EXPECT_EQ(seen[2], 90'000u);
+  EXPECT_EQ(seen[1], 900'000u);
+  EXPECT_EQ(DepthOf(0, 1), Depth::kTruth);
+  EXPECT_EQ(DepthOf(1, 50), Depth::kDefinition);
+}
+
+TEST(TimedPass, TimesEveryRowInEveryRound) {
+  SweepPlan plan = Plan(20'000, 2);
+  plan.timing = true;
+  EnergyResult energy{plan.rows[0]->energy, {}, {}};
+  for (const KernelRow* row : plan.rows) energy.rows.push_back({row, {}, {}, {}});
+  Progress progress(false);
+  RunTimedPass(plan, *energy.energy, energy.rows, progress);
+  for (const RowResult& r : energy.rows) {
+    EXPECT_EQ(r.timing.rounds.size(), static_cast<std::size_t>(TimedRounds(plan.count)));
+    for (double seconds : r.timing.rounds) {
+      EXPECT_GT(seconds, 0) << r.row->name;
+      EXPECT_LT(seconds, 1) << r.row->name;
+    }
+  }
+}
+
+TEST(Report, WritesNumbersForPeopleAndMachines) {
+  EXPECT_EQ(WithCommas(7), "7");
+  EXPECT_EQ(WithCommas(1000), "1,000");
+  EXPECT_EQ(WithCommas(1234567), "1,234,567");
+  for (double value : {0.1, -3.25, 0.0, 1e-310, 1e300}) {
+    EXPECT_EQ(std::strtod(HexFloat(value).c_str(), nullptr), value) << HexFloat(value);
+  }
+  EXPECT_EQ(Duration(5.2), "5 s");
+  EXPECT_EQ(Duration(65), "1 min 05 s");
+  EXPECT_EQ(Duration(3700), "1 h 01 min");
+}
+
+TEST(Report, GivesAReplayLineForABrokenPromise) {
+  Progress progress(false);
+  SweepResult result = RunSweep(Plan(100, 1), progress);
+  EXPECT_EQ(BrokenPromises(result), "");
+  result.energies[0].rows[0].statistics.broken[Property::kPsd] = 17;
+  const std::string lines = BrokenPromises(result);
+  EXPECT_NE(lines.find("promises to be psd"), std::string::npos);
+  EXPECT_NE(lines.find("--distribution active --seed 42 --index 17"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace definite
