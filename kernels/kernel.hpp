@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "kernels/core/vec.hpp"
 
@@ -34,6 +35,7 @@ struct PackedSym {
 enum class Set {
   kFrame,    // of the paper's reduced frame, in a form that is stable everywhere in the domain
   kPrinted,  // of the reduced frame, by the formulas as printed
+  kExact,    // the one whose sum cancels least; for most energies the frame's
 };
 
 // Which part of a set; a filter asks only for what it keeps.
@@ -85,12 +87,13 @@ struct Exemption {
 template <class E, class T>
 concept EnergyOver = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
   { E::Name() } -> std::convertible_to<std::string>;
-  { E::kSource } -> std::convertible_to<std::string_view>;
+  { E::Source() } -> std::convertible_to<std::string>;
   { E::Stencil::kName } -> std::convertible_to<std::string_view>;
   { std::span<const Parameter>(E::kParameters) };
   { E::Value(x, p) } -> std::same_as<T>;
   { E::Gradient(x, p) } -> std::same_as<Vec<T, E::kDofs>>;
   { E::Classify(x, p) } -> std::same_as<Classification<T>>;
+  E::template HessianModes<Set::kExact, Part::kAll>(x, p);
   { E::template HessianModes<Set::kFrame, Part::kAll>(x, p).lambda[0] } -> std::same_as<T&&>;
   { E::template HessianModes<Set::kFrame, Part::kAll>(x, p).v[0] } -> std::same_as<Vec<T, E::kDofs>&&>;
   E::template HessianModes<Set::kFrame, Part::kPositive>(x, p);
@@ -114,6 +117,20 @@ concept FilterOver =
       { std::span<const Exemption>(F::kExempt) };
       requires kIsSymmetric<decltype(F::template Apply<E>(x, p)), T, E::kDofs>;
     };
+
+// One term map^T (sum of modes) map of a Hessian in a reduced frame of F coordinates.
+template <class T, int F, int D, int K>
+struct FrameTerm {
+  Modes<T, F, K> modes;
+  T map[F][D];
+};
+
+// An energy that shows its reduced frame: a tuple of terms that sum to its Hessian, the curvature
+// being the first mode of the first.
+template <class E, class T>
+concept WithFrame = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+  std::get<0>(E::FrameTerms(x, p)).map;
+};
 
 // An energy that offers the modes of a set.
 template <class E, class T, Set kSet>
@@ -168,7 +185,7 @@ using TileFunction = void (*)(const double* x, const double* p, double* out, lon
 // One for each energy; its functions are scalar (W = 1).
 struct EnergyRow {
   std::string name;         // "collision/vertex_face/signed/quadratic"
-  std::string_view source;  // paper and equations
+  std::string source;  // paper and equations
   std::string_view stencil;
   int dofs;
   std::span<const Parameter> parameters;

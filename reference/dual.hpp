@@ -82,6 +82,23 @@ struct Dual2 {
   }
 };
 
+// The value alone, of a dual number or of a plain scalar.
+template <class T>
+T ValueOf(const T& s) {
+  return s;
+}
+template <class T, int N>
+T ValueOf(const Dual2<T, N>& s) {
+  return s.value;
+}
+
+template <int N, class S>
+auto Values(const S* x) {
+  std::array<decltype(ValueOf(*x)), N> values;
+  for (size_t i = 0; i < N; ++i) values[i] = ValueOf(x[i]);
+  return values;
+}
+
 // The independent variables x[0..N) themselves.
 template <int N, class T>
 std::array<Dual2<T, N>, N> Variables(const T* x) {

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <array>
 #include <concepts>
-#include <string_view>
+#include <string>
 
 #include "reference/dual.hpp"
 #include "reference/matrix.hpp"
@@ -19,6 +20,9 @@ template <class T>
 struct Frame {
   Matrix<T> hessian;  // of psi in the frame coordinates c: frame_dofs x frame_dofs
   Matrix<T> map;      // S, c = S x with its weights frozen at x: frame_dofs x dofs
+  // D = dc/dx - S, where psi's Hessian is S^T Hc S - D^T Hc D (Shi & Kim 2023, Eq. 17); empty where
+  // it is S^T Hc S.
+  Matrix<T> remainder;
 };
 
 // One energy psi(x; p), by name. x has `dofs` entries, p has `params`; units are the caller's. Ask
@@ -28,10 +32,11 @@ struct Frame {
 // every double.
 template <class T>
 struct Energy {
-  std::string_view name;
+  std::string name;
   int dofs;
   int params;
-  int frame_dofs;  // 0: no frame
+  int frame_dofs;      // 0: no frame
+  bool has_remainder;  // whether the frame has one
   bool (*in_domain)(const T* x, const T* p);
   bool (*active)(const T* x, const T* p);
   // At most 1: what bounds on rounding are divided by (docs/protocol.md, section 1).
@@ -44,12 +49,14 @@ struct Energy {
 };
 
 // What an energy must define, in plain form, for any scalar S (T itself or dual numbers over it).
-// Optional: Length(x, p) and Penalty(s, p) with psi = Penalty(Length); kFrameDofs, FrameValue(c, p)
-// and FrameAt(x, at, p), the frame coordinates c of x with their weights frozen at `at` (T), such
-// that psi(x) = FrameValue(FrameAt(x, x)).
+// Optional:
+//   Length(x, p) and Penalty(s, p) with psi = Penalty(Length);
+//   kFrameDofs; FrameAt(x, at, p), the frame coordinates c of x with their weights frozen at `at`
+//   (T); FrameValue(c, at, p), psi of them, such that psi(x) = FrameValue(FrameAt(x, x), x);
+//   FreeFrame(x, p), the coordinates with weights that follow x, if the frame has a remainder.
 template <class E>
 concept EnergyDefinition = requires(const Dual2<double, E::kDofs>* x, const double* p) {
-  { E::kName } -> std::convertible_to<std::string_view>;
+  { E::Name() } -> std::same_as<std::string>;
   { E::kParams } -> std::convertible_to<int>;
   { E::Value(x, p) } -> std::same_as<Dual2<double, E::kDofs>>;
   { E::InDomain(p, p) } -> std::same_as<bool>;
@@ -71,11 +78,20 @@ Derivatives<T> Unpack(const Dual2<T, N>& a) {
   return d;
 }
 
+// The gradients of c, in rows.
+template <class T, int N, size_t M>
+Matrix<T> Jacobian(const std::array<Dual2<T, N>, M>& c) {
+  Matrix<T> jacobian(M, N);
+  for (int i = 0; i < jacobian.rows; ++i)
+    for (int j = 0; j < N; ++j) jacobian(i, j) = c.data()[i].gradient[j];
+  return jacobian;
+}
+
 // The table row of an energy: every derivative by automatic differentiation.
 template <class T, EnergyDefinition E>
-constexpr Energy<T> MakeEnergy() {
+Energy<T> MakeEnergy() {
   Energy<T> row{};
-  row.name = E::kName;
+  row.name = E::Name();
   row.dofs = E::kDofs;
   row.params = E::kParams;
   row.in_domain = [](const T* x, const T* p) { return E::InDomain(x, p); };
@@ -95,17 +111,17 @@ constexpr Energy<T> MakeEnergy() {
   }
   if constexpr (requires { E::kFrameDofs; }) {
     row.frame_dofs = E::kFrameDofs;
+    constexpr bool kHasRemainder = requires(const T* x) { E::FreeFrame(x, x); };
+    row.has_remainder = kHasRemainder;
     row.frame = [](const T* x, const T* p) {
-      const auto frame = E::FrameAt(Variables<E::kDofs>(x).data(), x, p);
-      const Dual2<T, E::kDofs>* c = frame.data();
-      T values[E::kFrameDofs];
-      Matrix<T> map(E::kFrameDofs, E::kDofs);
-      for (int i = 0; i < E::kFrameDofs; ++i) {
-        values[i] = c[i].value;
-        for (int j = 0; j < E::kDofs; ++j) map(i, j) = c[i].gradient[j];
-      }
-      const auto psi = E::FrameValue(Variables<E::kFrameDofs>(values).data(), p);
-      return Frame<T>{Unpack(psi).hessian, map};
+      const auto variables = Variables<E::kDofs>(x);
+      const auto c = E::FrameAt(variables.data(), x, p);
+      const auto values = Values<E::kFrameDofs>(c.data());
+      const auto psi = E::FrameValue(Variables<E::kFrameDofs>(values.data()).data(), x, p);
+      Frame<T> frame{Unpack(psi).hessian, Jacobian(c), {}};
+      if constexpr (kHasRemainder)
+        frame.remainder = Jacobian(E::FreeFrame(variables.data(), p)) - frame.map;
+      return frame;
     };
   }
   return row;

@@ -34,6 +34,12 @@ Matrix<T> operator*(const Matrix<T>& a, const Matrix<T>& b) {
 }
 
 template <class T>
+Matrix<T> operator+(Matrix<T> a, const Matrix<T>& b) {
+  for (size_t i = 0; i < a.entries.size(); ++i) a.entries[i] += b.entries[i];
+  return a;
+}
+
+template <class T>
 Matrix<T> operator-(Matrix<T> a, const Matrix<T>& b) {
   for (size_t i = 0; i < a.entries.size(); ++i) a.entries[i] -= b.entries[i];
   return a;

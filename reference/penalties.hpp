@@ -1,8 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <string_view>
+#include <string>
 
 namespace definite::reference {
 
@@ -11,7 +9,7 @@ namespace definite::reference {
 
 // Shi & Kim 2023, Eq. 21.
 struct Quadratic {
-  static constexpr std::string_view kName = "quadratic";
+  static std::string Name() { return "quadratic"; }
 
   template <class S, class T>
   static S Value(const S& s, const T* p) {
@@ -20,22 +18,10 @@ struct Quadratic {
   }
 };
 
-// "a/b", at compile time.
-template <const std::string_view& a, const std::string_view& b>
-struct JoinedName {
-  static constexpr auto kChars = [] {
-    std::array<char, a.size() + 1 + b.size()> chars{};
-    *std::copy(a.begin(), a.end(), chars.begin()) = '/';
-    std::copy(b.begin(), b.end(), chars.begin() + a.size() + 1);
-    return chars;
-  }();
-  static constexpr std::string_view kName{kChars.data(), kChars.size()};
-};
-
 // The energy psi(x) = P(L(x)), active where L < eps = p[1].
 template <class L, class P>
 struct PenaltyOf : L {
-  static constexpr std::string_view kName = JoinedName<L::kName, P::kName>::kName;
+  static std::string Name() { return L::Name() + "/" + P::Name(); }
 
   template <class S, class T>
   static S Penalty(const S& s, const T* p) {
@@ -46,8 +32,8 @@ struct PenaltyOf : L {
     return P::Value(L::Length(x, p), p);
   }
   template <class S, class T>
-  static S FrameValue(const S* c, const T* p) {
-    return P::Value(L::FrameLength(c, p), p);
+  static S FrameValue(const S* c, const T* at, const T* p) {
+    return P::Value(L::FrameLength(c, at, p), p);
   }
   template <class T>
   static bool Active(const T* x, const T* p) {

@@ -119,11 +119,20 @@ Matrix<T> MapSpectrum(const Spectrum<T>& spectrum, F f) {
   return a;
 }
 
-// The PSD matrix nearest in the Frobenius norm (Higham 1988): negative eigenvalues become 0. A NaN
-// stays one.
+// What filters make of an eigenvalue. A NaN stays one.
+template <class T>
+T Clamp(const T& lambda) {
+  return lambda < 0 ? T(0) : lambda;
+}
+template <class T>
+T Magnitude(const T& lambda) {
+  return lambda < 0 ? T(-lambda) : lambda;
+}
+
+// The PSD matrix nearest in the Frobenius norm (Higham 1988): negative eigenvalues become 0.
 template <class T>
 Matrix<T> NearestPsd(const Spectrum<T>& spectrum) {
-  return MapSpectrum(spectrum, [](const T& lambda) { return lambda < 0 ? T(0) : lambda; });
+  return MapSpectrum(spectrum, Clamp<T>);
 }
 
 }  // namespace definite::reference

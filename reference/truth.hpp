@@ -13,7 +13,7 @@ namespace definite::reference {
 
 // Everything known about one configuration (x, p) of an energy, each quantity computed on first use
 // and kept. Outside the energy's domain every quantity is NaN; where inactive all are zero but the
-// length and the frame map. Not thread safe; cheap to make.
+// length and the frame's maps. Not thread safe; cheap to make.
 template <class T>
 class Truth {
  public:
@@ -46,10 +46,14 @@ class Truth {
     return Keep(curvature_,
                 [&] { return At(energy_.curvature, Undefined(energy_.dofs, energy_.dofs)); });
   }
-  // The Hessian in frame coordinates and the map S from x to them. Both throw std::logic_error if
-  // the energy has no frame.
+  // The Hessian in frame coordinates, the map S from x to them and its remainder D (empty if the
+  // energy has none). All throw std::logic_error if the energy has no frame.
   const Matrix<T>& FrameHessian() { return WholeFrame().hessian; }
   const Matrix<T>& FrameMap() { return WholeFrame().map; }
+  const Matrix<T>& FrameRemainder() { return WholeFrame().remainder; }
+  const Spectrum<T>& FrameSpectrum() {
+    return Keep(frame_spectrum_, [&] { return SpectrumOf(FrameHessian()); });
+  }
 
  private:
   template <class Q, class F>
@@ -59,7 +63,7 @@ class Truth {
   }
   template <class Q>
   Q At(Q (*function)(const T*, const T*), Q undefined) const {
-    if (!function) throw std::logic_error(std::string(energy_.name) + " has no such quantity");
+    if (!function) throw std::logic_error(energy_.name + " has no such quantity");
     return in_domain_ ? function(x_.data(), p_.data()) : undefined;
   }
   static Matrix<T> Undefined(int m, int n) { return Matrix<T>(m, n, kNaN); }
@@ -72,7 +76,10 @@ class Truth {
   }
   const Frame<T>& WholeFrame() {
     const int n = energy_.dofs, m = energy_.frame_dofs;
-    return Keep(frame_, [&] { return At(energy_.frame, {Undefined(m, m), Undefined(m, n)}); });
+    return Keep(frame_, [&] {
+      const Matrix<T> remainder = energy_.has_remainder ? Undefined(m, n) : Matrix<T>();
+      return At(energy_.frame, {Undefined(m, m), Undefined(m, n), remainder});
+    });
   }
 
   inline static const T kNaN = std::numeric_limits<T>::quiet_NaN();
@@ -86,6 +93,7 @@ class Truth {
   std::optional<Matrix<T>> nearest_;
   std::optional<Matrix<T>> curvature_;
   std::optional<Frame<T>> frame_;
+  std::optional<Spectrum<T>> frame_spectrum_;
 };
 
 }  // namespace definite::reference

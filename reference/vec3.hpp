@@ -11,6 +11,11 @@ struct Vec3 {
 };
 
 template <class S>
+Vec3<S> operator+(const Vec3<S>& a, const Vec3<S>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+template <class S>
 Vec3<S> operator-(const Vec3<S>& a, const Vec3<S>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "kernels/energies/collision_signed.hpp"
+#include "kernels/energies/collision.hpp"
 #include "kernels/filters/analytic.hpp"
 
 namespace definite::testing {
@@ -30,7 +30,7 @@ struct Spoilt {
 struct DividesByLength {
   template <class T, int D>
   static void Do(PackedSym<T, D>& f, const Vec<T, D>& x) {
-    const auto frame = SignedLength<VertexFace>::FrameOf(x, T(0.0));
+    const auto frame = Signed<VertexFace>::FrameOf(x, T(0.0));
     for (T& a : f.a) a = (a * frame.l) / frame.l;
   }
 };

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "reference/closest_points.hpp"
 #include "reference/oracle.hpp"
 #include "reference/stencils.hpp"
 
@@ -99,6 +100,7 @@ TEST(Matrix, MultipliesTransposesAndMeasures) {
   Matrix<double> a(2, 3);
   a.entries = {1, 2, 3, 4, 5, 6};
   EXPECT_EQ((a * Transpose(a)).entries, (std::vector<double>{14, 32, 32, 77}));
+  EXPECT_EQ((a + (a - a) + a).entries, (std::vector<double>{2, 4, 6, 8, 10, 12}));
   EXPECT_EQ(FrobeniusNorm(a), std::sqrt(91.0));
   EXPECT_EQ(Outer(2.0, Matrix<double>(a * Matrix<double>(3, 1, 1.0))).entries,
             (std::vector<double>{72, 180, 180, 450}));
@@ -412,6 +414,543 @@ TEST(SignedVertexFace, TakesEveryScaleOfDoublesInQuad) {
   });
 }
 
+constexpr std::string_view kUnsignedVertexFace = "collision/vertex_face/unsigned/quadratic";
+constexpr std::string_view kSigned = "collision/edge_edge/signed/quadratic";
+constexpr std::string_view kUnsigned = "collision/edge_edge/unsigned/quadratic";
+constexpr std::string_view kFrozen = "collision/edge_edge/unsigned_frozen/quadratic";
+constexpr std::string_view kHybrid = "collision/edge_edge/hybrid/quadratic";
+constexpr std::string_view kEdgeEdge[] = {kSigned, kUnsigned, kFrozen, kHybrid};
+constexpr std::string_view kCollisions[] = {
+    kName, kUnsignedVertexFace, kSigned, kUnsigned, kFrozen, kHybrid};
+
+template <class T, class U>
+Truth<T> TruthOf(std::string_view name, const Configuration<U>& c) {
+  return Truth<T>(*FindEnergy<T>(name), c.x.data(), c.p.data());
+}
+
+template <class T>
+Configuration<T> WithSide(Configuration<T> c, double side) {
+  c.p[2] = T(side);
+  return c;
+}
+
+// Calls check(configuration) for random active configurations of both sides and of neither.
+template <class F>
+void ForUnsignedVertexFaces(int count, F check) {
+  ForRandomConfigurations(count, [&](const Configuration<double>& c) {
+    for (const double side : {1.0, -1.0, 0.0}) {
+      SCOPED_TRACE("side " + std::to_string(side));
+      Configuration<double> active = WithSide(c, side);
+      active.p[1] = 2;  // beyond every distance in the unit cube
+      check(active);
+    }
+  });
+}
+
+template <class T>
+T Triple(const Edges<T>& e) {
+  return Dot(Cross(e.e0, e.e1), e.e2);
+}
+
+void ExpectDerivativesMatchDifferences(std::string_view name, const Configuration<Quad>& c) {
+  const Energy<Quad>& energy = *FindEnergy<Quad>(name);
+  ExpectDerivativesMatchDifferences<12>(
+      [&](const Quad* at) { return energy.value(at, c.p.data()); },
+      [&](const Quad* at) { return energy.derivatives(at, c.p.data()); }, c.x, 1e-18);
+}
+
+Configuration<Quad> ToQuad(const Configuration<double>& c) {
+  Configuration<Quad> exact;
+  std::copy(c.x.begin(), c.x.end(), exact.x.begin());
+  std::copy(c.p.begin(), c.p.end(), exact.p.begin());
+  return exact;
+}
+
+int CountBelow(const Spectrum<Quad>& spectrum, const Quad& bound) {
+  const auto& values = spectrum.values.entries;
+  return static_cast<int>(
+      std::count_if(values.begin(), values.end(), [&](const Quad& v) { return v < bound; }));
+}
+
+TEST(UnsignedVertexFace, IsTheDistanceWithTheGivenSign) {
+  const Energy<double>& energy = *FindEnergy<double>(kUnsignedVertexFace);
+  const double below[] = {0.25, 0.25, -1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const double above[] = {7, -3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};  // the plane, not the triangle
+  for (const auto& [side, at_below, at_above] :
+       {std::array{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}, {0.0, 1.0, -1.0}}) {
+    const double p[] = {3, 0.5, side}, wide[] = {3, 1.5, side};
+    EXPECT_EQ(energy.length(below, p), at_below);
+    EXPECT_EQ(energy.length(above, p), at_above);
+    EXPECT_EQ(energy.active(below, p), at_below < 0);
+    EXPECT_EQ(energy.value(below, p), at_below < 0 ? 3 * 1.5 * 1.5 : 0);
+    EXPECT_EQ(energy.value(below, wide), at_below < 0 ? 3 * 2.5 * 2.5 : 3 * 0.5 * 0.5);
+  }
+}
+
+TEST(UnsignedVertexFace, DerivativesMatchDifferences) {
+  ForUnsignedVertexFaces(7, [](const Configuration<double>& c) {
+    ExpectDerivativesMatchDifferences(kUnsignedVertexFace, ToQuad(c));
+  });
+}
+
+TEST(UnsignedVertexFace, IsTheSignedOneWhereTheSignsAgree) {
+  ForUnsignedVertexFaces(10, [](const Configuration<double>& c) {
+    const double triple = Triple(VertexFace::EdgesOf(c.x.data()));
+    Truth<Quad> truth = TruthOf<Quad>(kUnsignedVertexFace, c);
+    Truth<Quad> other = TruthOf<Quad>(WithSide(c, c.p[2] == 0 ? 0 : c.p[2] * triple));
+    EXPECT_EQ(truth.Value(), other.Value());
+    EXPECT_LT(Difference(truth.Gradient(), other.Gradient()), 1e-30);
+    EXPECT_LT(Difference(truth.Hessian(), other.Hessian()), 1e-30);
+    EXPECT_LT(Difference(truth.Curvature(), other.Curvature()), 1e-30);
+  });
+}
+
+// Shi & Kim 2023, Eq. 17.
+TEST(UnsignedVertexFace, FrameHessianPullsBackToTheHessianWithTheRemainder) {
+  ForUnsignedVertexFaces(7, [](const Configuration<double>& c) {
+    Truth<Quad> truth = TruthOf<Quad>(kUnsignedVertexFace, c);
+    const Matrix<Quad> main = Congruence(truth.FrameHessian(), truth.FrameMap());
+    const Matrix<Quad> rest = Congruence(truth.FrameHessian(), truth.FrameRemainder());
+    EXPECT_LT(Difference(main - rest, truth.Hessian()), 1e-28);
+    EXPECT_GT(Difference(main, truth.Hessian()), 1e-3);
+    EXPECT_EQ(truth.FrameMap().entries, TruthOf<Quad>(c).FrameMap().entries);
+    EXPECT_TRUE(TruthOf<Quad>(c).FrameRemainder().entries.empty());
+  });
+}
+
+TEST(UnsignedVertexFace, AnalyticFilterClampsEachTerm) {
+  ForUnsignedVertexFaces(7, [](const Configuration<double>& c) {
+    Truth<Quad> truth = TruthOf<Quad>(kUnsignedVertexFace, c);
+    const Matrix<Quad> positive = NearestPsd(SpectrumOf(truth.FrameHessian()));
+    const Matrix<Quad> negative = truth.FrameHessian() - positive;
+    const Matrix<Quad> expected =
+        Congruence(positive, truth.FrameMap()) - Congruence(negative, truth.FrameRemainder());
+    const Matrix<Quad> filtered = FindFilter<Quad>("analytic")->define(truth);
+    EXPECT_LT(Difference(filtered, expected), 1e-30);
+    const Quad tolerance = Quad(1e-30) * FrobeniusNorm(filtered);
+    EXPECT_EQ(CountBelow(SpectrumOf(filtered), -tolerance), 0);
+    // It only adds: psi'/u on the plane from the first term outside, from the second inside.
+    EXPECT_EQ(CountBelow(SpectrumOf(filtered - truth.Hessian()), -tolerance), 0);
+  });
+}
+
+enum class Region { kInside, kEndOfB, kEndOfA, kEnds };
+
+// Two edges, constructed from their closest points x0 + a e0 and x2 + b e1.
+struct EdgePair : Configuration<Quad> {
+  Region region;
+  Quad a, b;
+  Vec3<Quad> between;  // the closest points
+  Quad u;              // |between|, below eps
+
+  Edges<Quad> Edge() const { return EdgeEdge::EdgesOf(x.data()); }
+  Quad Sine() const {
+    return Norm(Cross(Edge().e0, Edge().e1)) / Norm(Edge().e0) / Norm(Edge().e1);
+  }
+  // The sign of the signed length, and of the unsigned one.
+  int Turn() const { return (Triple(Edge()) < 0) != (p[2] < 0) ? -1 : 1; }
+  int Side() const { return p[2] < 0 ? -1 : p[2] > 0 ? 1 : Turn(); }
+};
+
+EdgePair DrawEdgePair(std::mt19937_64& random, Region region, double side) {
+  const auto vector = [&] {
+    const double x = Draw(random, -1, 1), y = Draw(random, -1, 1), z = Draw(random, -1, 1);
+    return Vec3<Quad>{Quad(x), Quad(y), Quad(z)};
+  };
+  const auto normal_to = [](const Vec3<Quad>& v, const Vec3<Quad>& e) {
+    return v - Dot(v, e) / Dot(e, e) * e;
+  };
+  const bool a_inside = region == Region::kInside || region == Region::kEndOfB;
+  const bool b_inside = region == Region::kInside || region == Region::kEndOfA;
+  EdgePair pair;
+  while (true) {
+    const Vec3<Quad> e0 = vector(), e1 = vector(), x0 = vector();
+    Vec3<Quad> d = vector();
+    if (a_inside) d = normal_to(d, e0);
+    if (b_inside) d = normal_to(d, e1);
+    if (region == Region::kInside) d = Dot(d, Cross(e0, e1)) < 0 ? Cross(e1, e0) : Cross(e0, e1);
+    d = Quad(Draw(random, 0.1, 0.5)) / Norm(d) * d;
+    pair.region = region;
+    pair.a = Quad(a_inside ? Draw(random, 0.1, 0.9) : std::round(Draw(random, 0, 1)));
+    pair.b = Quad(b_inside ? Draw(random, 0.1, 0.9) : std::round(Draw(random, 0, 1)));
+    pair.between = d;
+    pair.u = Norm(d);
+    const Vec3<Quad> x2 = x0 + pair.a * e0 + d - pair.b * e1;
+    const std::array vertices{x0, x0 + e0, x2, x2 + e1};
+    for (size_t i = 0; i < 12; ++i) {
+      const Vec3<Quad>& v = vertices.data()[i / 3];
+      pair.x.data()[i] = i % 3 == 0 ? v.x : i % 3 == 1 ? v.y : v.z;
+    }
+    pair.p = {Quad(Draw(random, 0.5, 2)), Quad(Draw(random, 0.6, 1)), Quad(side)};
+    // At an end, the distance grows along the edge: that makes a convex function's minimum.
+    const Quad along_a = (2 * pair.a - 1) * Dot(d, e0) / pair.u;
+    const Quad along_b = (1 - 2 * pair.b) * Dot(d, e1) / pair.u;
+    if ((a_inside || along_a > 0.1) && (b_inside || along_b > 0.1) && pair.Sine() > 0.1)
+      return pair;
+  }
+}
+
+template <class F>
+void ForEdgePairs(int count, F check) {
+  std::mt19937_64 random(20240612);
+  for (const Region region : {Region::kInside, Region::kEndOfB, Region::kEndOfA, Region::kEnds}) {
+    for (const double side : {1.0, -1.0, 0.0}) {
+      for (int i = 0; i < count; ++i) {
+        SCOPED_TRACE("region " + std::to_string(static_cast<int>(region)) + ", side " +
+                     std::to_string(side) + ", pair " + std::to_string(i));
+        check(DrawEdgePair(random, region, side));
+      }
+    }
+  }
+}
+
+TEST(ClosestPoints, AreThoseTheEdgesWereConstructedFrom) {
+  ForEdgePairs(10, [](const EdgePair& pair) {
+    const ClosestPoints<Quad> found = FindClosestPoints(pair.Edge());
+    EXPECT_LT(abs(found.a - pair.a) + abs(found.b - pair.b), Quad(1e-30));
+    EXPECT_EQ(found.a_inside, pair.region == Region::kInside || pair.region == Region::kEndOfB);
+    EXPECT_EQ(found.b_inside, pair.region == Region::kInside || pair.region == Region::kEndOfA);
+    EXPECT_LT(Norm(Between(pair.Edge(), found) - pair.between), Quad(1e-31));
+  });
+}
+
+TEST(ClosestPoints, AreNearestByBruteForce) {
+  std::mt19937_64 random(20240613);
+  std::array<int, 4> seen{};
+  for (int i = 0; i < 200; ++i) {
+    std::array<double, 12> x;
+    for (double& entry : x) entry = Draw(random, 0, 1);
+    const auto [e0, e1, e2] = EdgeEdge::EdgesOf(x.data());
+    const auto distance = [&, v0 = e0, v1 = e1, v2 = e2](double a, double b) {
+      return Norm(v2 - a * v0 + b * v1);
+    };
+    // The best of 11 x 11 points in a square that closes in on it.
+    double a = 0.5, b = 0.5;
+    for (double half = 0.5; half > 1e-9; half *= 0.8) {
+      const double centre_a = a, centre_b = b;
+      for (int j = -5; j <= 5; ++j) {
+        for (int k = -5; k <= 5; ++k) {
+          const double new_a = std::clamp(centre_a + j * half / 5, 0.0, 1.0);
+          const double new_b = std::clamp(centre_b + k * half / 5, 0.0, 1.0);
+          if (distance(new_a, new_b) < distance(a, b)) a = new_a, b = new_b;
+        }
+      }
+    }
+    const double p[] = {1, 10, 1};
+    for (const std::string_view name : {kUnsigned, kFrozen})
+      EXPECT_NEAR(FindEnergy<double>(name)->length(x.data(), p), distance(a, b), 1e-12) << name;
+    const auto points = FindClosestPoints(Edges<double>{e0, e1, e2});
+    ++seen[static_cast<size_t>(2 * points.a_inside + points.b_inside)];
+  }
+  for (const int count : seen) EXPECT_GT(count, 10);
+}
+
+TEST(EdgeEdge, LengthsHaveTheSignsOfTheirSides) {
+  ForEdgePairs(5, [](const EdgePair& pair) {
+    const auto length = [&](std::string_view name) {
+      return FindEnergy<Quad>(name)->length(pair.x.data(), pair.p.data());
+    };
+    const Edges<Quad> e = pair.Edge();
+    const Quad height = pair.Turn() * abs(Triple(e)) / Norm(Cross(e.e0, e.e1));
+    EXPECT_LT(abs(length(kSigned) - height), Quad(1e-31));
+    EXPECT_LT(abs(length(kUnsigned) - pair.Side() * pair.u), Quad(1e-31));
+    EXPECT_LT(abs(length(kFrozen) - pair.Side() * pair.u), Quad(1e-31));
+    EXPECT_LT(abs(length(kHybrid) - pair.Turn() * pair.u), Quad(1e-31));
+  });
+}
+
+TEST(EdgeEdge, DerivativesMatchDifferences) {
+  ForEdgePairs(2, [](const EdgePair& pair) {
+    ExpectDerivativesMatchDifferences(kSigned, pair);
+    ExpectDerivativesMatchDifferences(kUnsigned, pair);
+    if (pair.region == Region::kInside) ExpectDerivativesMatchDifferences(kHybrid, pair);
+  });
+}
+
+// Of k (s |sum_i w_i x_i| - eps)^2 with constant w.
+TEST(EdgeEdge, FrozenDerivativesMatchDifferencesAtFrozenPoints) {
+  ForEdgePairs(2, [](const EdgePair& pair) {
+    const Quad w[] = {pair.a - 1, -pair.a, 1 - pair.b, pair.b};
+    const auto check = [&](std::string_view name, int sign) {
+      const auto psi = [&](const auto* x) {
+        const auto along = [&](int i) {
+          return w[0] * x[i] + w[1] * x[i + 3] + w[2] * x[i + 6] + w[3] * x[i + 9];
+        };
+        const auto u = sqrt(along(0) * along(0) + along(1) * along(1) + along(2) * along(2));
+        return pair.p[0] * (sign * u - pair.p[1]) * (sign * u - pair.p[1]);
+      };
+      const auto exact = [&](const Quad* x) { return Unpack(psi(Variables<12>(x).data())); };
+      ExpectDerivativesMatchDifferences<12>(psi, exact, pair.x, 1e-18);
+      Truth<Quad> truth = TruthOf<Quad, Quad>(name, pair);
+      EXPECT_LT(abs(truth.Value() - exact(pair.x.data()).value), Quad(1e-31));
+      EXPECT_LT(Difference(truth.Gradient(), exact(pair.x.data()).gradient), 1e-29);
+      EXPECT_LT(Difference(truth.Hessian(), exact(pair.x.data()).hessian), 1e-29);
+    };
+    check(kFrozen, pair.Side());
+    if (pair.region != Region::kInside) check(kHybrid, pair.Turn());
+  });
+}
+
+// The closest points move without changing the distance, to first order (envelope theorem).
+TEST(EdgeEdge, FrozenGradientIsTheGradient) {
+  ForEdgePairs(5, [](const EdgePair& pair) {
+    Truth<Quad> frozen = TruthOf<Quad, Quad>(kFrozen, pair);
+    Truth<Quad> exact = TruthOf<Quad, Quad>(kUnsigned, pair);
+    EXPECT_LT(Difference(frozen.Gradient(), exact.Gradient()), 1e-29);
+    EXPECT_LT(Difference(frozen.Curvature(), exact.Curvature()), 1e-29);
+    if (pair.region == Region::kEnds)
+      EXPECT_LT(Difference(frozen.Hessian(), exact.Hessian()), 1e-29);
+    else
+      EXPECT_GT(Difference(frozen.Hessian(), exact.Hessian()), 1e-3);
+  });
+}
+
+TEST(EdgeEdge, UnsignedAndHybridAreTheSignedOneBetweenInsides) {
+  ForEdgePairs(5, [](const EdgePair& pair) {
+    if (pair.region != Region::kInside) return;
+    Truth<Quad> agreeing = TruthOf<Quad, Quad>(
+        kSigned, WithSide<Quad>(pair, Triple(pair.Edge()) < 0 ? -pair.Side() : pair.Side()));
+    Truth<Quad> truth = TruthOf<Quad, Quad>(kUnsigned, pair);
+    EXPECT_LT(Difference(truth.Hessian(), agreeing.Hessian()), 1e-30);
+    EXPECT_EQ((TruthOf<Quad, Quad>(kHybrid, pair).Hessian().entries),
+              (TruthOf<Quad, Quad>(kSigned, pair).Hessian().entries));
+  });
+}
+
+TEST(EdgeEdge, HybridIsTheFrozenOneAtEnds) {
+  ForEdgePairs(5, [](const EdgePair& pair) {
+    if (pair.region == Region::kInside) return;
+    Truth<Quad> frozen = TruthOf<Quad, Quad>(kFrozen, WithSide<Quad>(pair, pair.Turn()));
+    EXPECT_EQ((TruthOf<Quad, Quad>(kHybrid, pair).Hessian().entries), frozen.Hessian().entries);
+  });
+}
+
+TEST(EdgeEdge, HasTwoNegativeEigenvaluesOutsideContact) {
+  ForEdgePairs(5, [](const EdgePair& pair) {
+    Truth<Quad> truth = TruthOf<Quad, Quad>(kUnsigned, pair);
+    if (pair.Side() < 0) return;
+    const Quad tolerance = Quad(1e-25) * FrobeniusNorm(truth.Hessian());
+    EXPECT_EQ(CountBelow(truth.HessianSpectrum(), -tolerance), 2);
+  });
+}
+
+TEST(EdgeEdge, FrameHessianPullsBackToTheHessian) {
+  ForEdgePairs(5, [](const EdgePair& pair) {
+    for (const std::string_view name : kEdgeEdge) {
+      Truth<Quad> truth = TruthOf<Quad, Quad>(name, pair);
+      EXPECT_LT(Difference(Congruence(truth.FrameHessian(), truth.FrameMap()), truth.Hessian()),
+                1e-28)
+          << name;
+      EXPECT_TRUE(truth.FrameRemainder().entries.empty()) << name;
+    }
+  });
+}
+
+// That identity holds for other frames too.
+TEST(EdgeEdge, FrameHoldsTheVectorBetweenTheClosestPoints) {
+  ForEdgePairs(5, [](const EdgePair& pair) {
+    const auto expect = [&](std::string_view name, const Vec3<Quad>& c0, const Vec3<Quad>& c1,
+                            const Vec3<Quad>& c2) {
+      Matrix<Quad> x(12, 1);
+      std::copy(pair.x.begin(), pair.x.end(), x.entries.begin());
+      const Matrix<Quad> c = TruthOf<Quad, Quad>(name, pair).FrameMap() * x;
+      EXPECT_LT(Norm(Block(&c[0], 0) - c0), Quad(1e-31)) << name;
+      EXPECT_LT(Norm(Block(&c[0], 1) - c1), Quad(1e-30)) << name;
+      EXPECT_LT(Norm(Block(&c[0], 2) - c2), Quad(1e-30)) << name;
+    };
+    const auto [e0, e1, e2] = pair.Edge();
+    const Vec3<Quad> zero{}, c1 = e1 - Dot(e1, e0) / Dot(e0, e0) * e0;
+    const Vec3<Quad> n = Quad(1 / Norm(Cross(e0, e1))) * Cross(e0, e1);
+    expect(kSigned, e0, c1, Dot(e2, n) * n);
+    expect(kFrozen, zero, zero, pair.between);
+    switch (pair.region) {
+      case Region::kInside:
+        expect(kUnsigned, e0, c1, pair.between);
+        expect(kHybrid, e0, c1, pair.between);
+        return;
+      case Region::kEndOfB:
+        expect(kUnsigned, e0, zero, pair.between);
+        break;
+      case Region::kEndOfA:
+        expect(kUnsigned, e1, zero, zero - pair.between);
+        break;
+      case Region::kEnds:
+        expect(kUnsigned, zero, zero, pair.between);
+        break;
+    }
+    expect(kHybrid, zero, zero, pair.between);
+  });
+}
+
+// The frame Hessian is psi'' n n^T + psi'/u (I - n n^T), and psi' < 0.
+TEST(EdgeEdge, AnalyticFilterOfFrozenIsGaussNewtonOutsideContact) {
+  ForEdgePairs(5, [](const EdgePair& pair) {
+    Truth<Quad> truth = TruthOf<Quad, Quad>(kFrozen, pair);
+    const Matrix<Quad> filtered = FindFilter<Quad>("analytic")->define(truth);
+    if (pair.Side() > 0)
+      EXPECT_LT(Difference(filtered, truth.Curvature()), 1e-29);
+    else
+      EXPECT_LT(Difference(filtered, truth.Hessian()), 1e-29);  // psi' > 0: already PSD
+  });
+}
+
+TEST(EdgeEdge, IgnoresTheNumberingOfTheEdges) {
+  using Numbering = std::array<int, 4>;
+  const auto expect_same = [](std::string_view name, const EdgePair& pair,
+                              const Numbering& numbering, double side) {
+    Configuration<Quad> other = WithSide<Quad>(pair, side);
+    const auto entry = [&](int i) { return 3 * numbering.data()[i / 3] + i % 3; };
+    for (int i = 0; i < 12; ++i) other.x.data()[i] = pair.x.data()[entry(i)];
+    Truth<Quad> truth = TruthOf<Quad, Quad>(name, pair), same = TruthOf<Quad>(name, other);
+    Matrix<Quad> expected(12, 12);
+    for (int i = 0; i < 12; ++i)
+      for (int j = 0; j < 12; ++j) expected(i, j) = truth.Hessian()(entry(i), entry(j));
+    EXPECT_LT(abs(same.Value() - truth.Value()), Quad(1e-30)) << name;
+    EXPECT_LT(Difference(same.Hessian(), expected), 1e-28) << name;
+  };
+  ForEdgePairs(2, [&](const EdgePair& pair) {
+    const double side = static_cast<double>(pair.p[2]);
+    for (const std::string_view name : kEdgeEdge) {
+      expect_same(name, pair, {2, 3, 0, 1}, side);
+      expect_same(name, pair, {1, 0, 3, 2}, side);
+    }
+    if (side == 0) return;
+    for (const Numbering& one_reversed : {Numbering{1, 0, 2, 3}, {0, 1, 3, 2}}) {
+      expect_same(kUnsigned, pair, one_reversed, side);
+      expect_same(kFrozen, pair, one_reversed, side);
+      expect_same(kSigned, pair, one_reversed, -side);
+      expect_same(kHybrid, pair, one_reversed, -side);
+    }
+  });
+}
+
+TEST(EdgeEdge, IgnoresTranslations) {
+  Matrix<Quad> translations(12, 3);
+  for (int i = 0; i < 12; ++i) translations(i, i % 3) = Quad(1);
+  ForEdgePairs(2, [&](const EdgePair& pair) {
+    for (const std::string_view name : kEdgeEdge) {
+      Truth<Quad> truth = TruthOf<Quad, Quad>(name, pair);
+      EXPECT_LT(FrobeniusNorm(truth.Hessian() * translations),
+                Quad(1e-30) * FrobeniusNorm(truth.Hessian()));
+      EXPECT_LT(FrobeniusNorm(truth.FrameMap() * translations), Quad(1e-30));
+    }
+  });
+}
+
+// Unit edges: A along the x-axis from the origin, B along `direction` from `start`.
+Configuration<double> UnitEdges(const Vec3<double>& start, const Vec3<double>& direction,
+                                double side) {
+  const Vec3<double> end = start + direction;
+  return {{0, 0, 0, 1, 0, 0, start.x, start.y, start.z, end.x, end.y, end.z}, {3, 2, side}};
+}
+constexpr Vec3<double> kX{1, 0, 0}, kY{0, 1, 0};
+
+TEST(EdgeEdge, MeasuresUnitEdgesAtRightAngles) {
+  struct Case {
+    Vec3<double> start;
+    double height, distance;
+    std::array<double, 4> w;
+    Vec3<double> between;
+  };
+  const Case cases[] = {
+      {{0.5, -0.25, 0.5}, 0.5, 0.5, {-0.5, -0.5, 0.75, 0.25}, {0, 0, 0.5}},
+      {{0.5, -0.25, -0.5}, -0.5, 0.5, {-0.5, -0.5, 0.75, 0.25}, {0, 0, -0.5}},
+      {{0.25, 0.75, 1}, 1, 1.25, {-0.75, -0.25, 1, 0}, {0, 0.75, 1}},         // x2 to A
+      {{0.25, -1.75, -1}, -1, 1.25, {-0.75, -0.25, 0, 1}, {0, -0.75, -1}},    // x3 to A
+      {{1.75, -0.25, 1}, 1, 1.25, {0, -1, 0.75, 0.25}, {0.75, 0, 1}},         // x1 to B
+      {{-0.75, -0.25, 1}, 1, 1.25, {-1, 0, 0.75, 0.25}, {-0.75, 0, 1}},       // x0 to B
+      {{1.375, 0.5, 1.5}, 1.5, 1.625, {0, -1, 1, 0}, {0.375, 0.5, 1.5}},      // x1 to x2
+      {{-0.375, -1.5, 1.5}, 1.5, 1.625, {-1, 0, 0, 1}, {-0.375, -0.5, 1.5}},  // x0 to x3
+      {{0.5, 0.25, 0}, 0, 0.25, {-0.5, -0.5, 1, 0}, {0, 0.25, 0}},            // in one plane
+  };
+  for (const Case& c : cases) {
+    for (const double side : {1.0, -1.0, 0.0}) {
+      SCOPED_TRACE(std::to_string(&c - cases) + ", side " + std::to_string(side));
+      const auto expect = [&](std::string_view name, double length) {
+        const Configuration<double> edges = UnitEdges(c.start, kY, side);
+        const Energy<double>& energy = *FindEnergy<double>(name);
+        EXPECT_EQ(energy.length(edges.x.data(), edges.p.data()), length) << name;
+        Truth<double> truth = TruthOf<double>(name, edges);
+        EXPECT_EQ(truth.Value(), 3 * (length - 2) * (length - 2)) << name;
+        if (name == kSigned) return;
+        const double slope = 2 * 3 * (length - 2) / length;
+        const double between[] = {c.between.x, c.between.y, c.between.z};
+        for (int i = 0; i < 12; ++i)
+          EXPECT_NEAR(truth.Gradient()[i], slope * c.w.data()[i / 3] * between[i % 3], 1e-14)
+              << name;
+      };
+      const double turn = side < 0 ? -1 : 1, triple = c.height < 0 ? -1 : 1;
+      expect(kSigned, turn * c.height);
+      expect(kUnsigned, side == 0 ? triple * c.distance : turn * c.distance);
+      expect(kFrozen, side == 0 ? triple * c.distance : turn * c.distance);
+      // 0 counts as positive even if turned.
+      expect(kHybrid, c.height == 0 ? c.distance : turn * triple * c.distance);
+    }
+  }
+}
+
+TEST(EdgeEdge, MeasuresParallelEdges) {
+  for (const auto& [start, distance] :
+       {std::pair(Vec3<double>{0.25, 0.75, 1}, 1.25),
+        std::pair(Vec3<double>{1.375, 0.5, 1.5}, 1.625), std::pair(Vec3<double>{1.5, 0, 0}, 0.5),
+        // Slanted, the lines cross over the middle of both.
+        std::pair(Vec3<double>{0, -0.45e-8, 1}, 1.0)}) {
+    for (const double side : {1.0, -1.0, 0.0}) {
+      for (const double direction : {1.0, -1.0}) {
+        // Turned, B keeps its place; the second one is parallel within the threshold of the domain.
+        const Vec3<double> from = direction < 0 ? start + kX : start;
+        for (const double slant : {0.0, 0.9e-8}) {
+          const auto edges = UnitEdges(from, direction * kX + slant * kY, side);
+          EXPECT_FALSE(TruthOf<double>(kSigned, edges).InDomain());
+          const auto expect = [&, d = distance](std::string_view name, double sign) {
+            EXPECT_TRUE(TruthOf<double>(name, edges).InDomain()) << name;
+            EXPECT_NEAR(FindEnergy<double>(name)->length(edges.x.data(), edges.p.data()), sign * d,
+                        2e-8)
+                << name;
+          };
+          expect(kUnsigned, side < 0 ? -1 : 1);
+          expect(kFrozen, side < 0 ? -1 : 1);
+          expect(kHybrid, 1);
+        }
+      }
+    }
+  }
+}
+
+TEST(EdgeEdge, TouchingIsOutsideTheDomainOfUnsignedLengths) {
+  const auto crossing = UnitEdges({0.5, -0.5, 0}, kY, 1);
+  for (const Configuration<double>& c :
+       {crossing, UnitEdges({0.5, 0, 0}, kY, 1), UnitEdges({1, 0, 0}, kY, 1),
+        UnitEdges({0.5, 0, 0}, kX, 1)}) {
+    EXPECT_FALSE(TruthOf<Quad>(kUnsigned, c).InDomain());
+    EXPECT_FALSE(TruthOf<Quad>(kFrozen, c).InDomain());
+    EXPECT_EQ(TruthOf<Quad>(kHybrid, c).InDomain(), c.x == crossing.x);
+  }
+  Truth<Quad> signed_truth = TruthOf<Quad>(kSigned, crossing);
+  EXPECT_EQ(TruthOf<Quad>(kHybrid, crossing).Hessian().entries, signed_truth.Hessian().entries);
+  EXPECT_EQ(signed_truth.Value(), 3 * 2 * 2);
+}
+
+// docs/protocol.md, section 1: the sine of the angle and the distance over the longest edge.
+TEST(Energies, KnowTheirConditioning) {
+  const auto conditioning = [](std::string_view name, const Configuration<double>& c) {
+    return FindEnergy<double>(name)->conditioning(c.x.data(), c.p.data());
+  };
+  const auto expect = [&](const Configuration<double>& c, const std::array<double, 4>& expected) {
+    for (size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(conditioning(kEdgeEdge[i], c), expected.data()[i], 1e-15) << kEdgeEdge[i];
+  };
+  const Vec3<double> oblique{0.6, 0.8, 0};
+  expect(UnitEdges({0.25, -0.25, 0.5}, oblique, 1), {0.8, 0.8, 0.4, 0.8});
+  expect(UnitEdges({0.25, 0.375, 0.5}, oblique, 1), {0.8, 0.625, 0.625, 0.625});  // x2 to A
+  expect(UnitEdges({0, 0.75, 1}, oblique, 1), {0.8, 1, 1, 1});                    // |e2| = u = 1.25
+  expect(UnitEdges({2.5, 0, 2}, kY, 1), {1, 2.5 / std::sqrt(10.25), 2.5 / std::sqrt(10.25),
+                                         2.5 / std::sqrt(10.25)});  // |e2| > |e0|
+  const double h = 0.25;
+  const Configuration<double> face{{0, 0, h, 1, 0, 0, 0, 0, 0, 0.6, 0.8, 0}, {1, 1, 1}};
+  EXPECT_NEAR(conditioning(kUnsignedVertexFace, face), 0.8 * h, 1e-15);
+}
+
 template <class T>
 class TruthTest : public testing::Test {};
 using Scalars = testing::Types<double, Quad>;
@@ -431,6 +970,21 @@ TYPED_TEST(TruthTest, IsZeroWhereInactive) {
     for (const Filter<T>& filter : AllFilters<T>())
       EXPECT_TRUE(AllEqual(filter.define(truth), T(0))) << filter.name;
   });
+}
+
+TYPED_TEST(TruthTest, IsZeroWhereAnyCollisionIsInactive) {
+  using T = TypeParam;
+  for (const std::string_view name : kCollisions) {
+    ForRandomConfigurations(5, [&](Configuration<double> c) {
+      c.p[1] = -2;
+      Truth<T> truth = TruthOf<T>(name, c);
+      EXPECT_TRUE(truth.InDomain());
+      EXPECT_FALSE(truth.Active());
+      EXPECT_GT(FrobeniusNorm(truth.FrameMap()), 0);
+      for (const Filter<T>& filter : AllFilters<T>())
+        EXPECT_TRUE(AllEqual(filter.define(truth), T(0))) << name << ", " << filter.name;
+    });
+  }
 }
 
 TYPED_TEST(TruthTest, IsInactiveAtTheActivationDistance) {
@@ -470,6 +1024,35 @@ TYPED_TEST(TruthTest, IsNaNOutsideTheDomain) {
   EXPECT_TRUE(TruthOf<T>(inside).InDomain());
 }
 
+TYPED_TEST(TruthTest, IsNaNOutsideTheDomainOfEdges) {
+  using T = TypeParam;
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  for (const std::string_view name : kEdgeEdge) {
+    for (const double bad : {nan, infinity, -infinity}) {
+      for (size_t i = 0; i < 12; ++i) {
+        Configuration<double> c = UnitEdges({0.5, 0.25, 0.5}, kY, 1);
+        c.x.data()[i] = bad;
+        EXPECT_FALSE(TruthOf<T>(name, c).InDomain()) << name << ", entry " << i << ", " << bad;
+      }
+    }
+    const std::array<double, 3> p{1, 2, 1};
+    for (const Configuration<double>& c :
+         {Configuration<double>{{0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 1, 0}, p},
+          Configuration<double>{{0, 1, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0}, p},
+          Configuration<double>{{0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}, p}}) {
+      EXPECT_FALSE(TruthOf<T>(name, c).InDomain()) << name << ", a point";
+    }
+  }
+  const Configuration<double> touching{{0.5, 0.5, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0}, {1, 2, 1}};
+  Truth<T> truth = TruthOf<T>(kUnsignedVertexFace, touching);
+  EXPECT_FALSE(truth.InDomain());
+  EXPECT_EQ(truth.FrameRemainder().rows, 9);
+  EXPECT_EQ(truth.FrameRemainder().cols, 12);
+  EXPECT_TRUE(AllNaN(truth.FrameRemainder()));
+  for (const Filter<T>& filter : AllFilters<T>())
+    EXPECT_TRUE(AllNaN(filter.define(truth))) << filter.name;
+}
+
 TYPED_TEST(TruthTest, KeepsANaNOfTheVertex) {
   using T = TypeParam;
   const Configuration<double> c{{0, 0, std::nan(""), 1, 0, 0, 0, 0, 0, 0, 1, 0}, {1, 0.5, 1}};
@@ -491,15 +1074,33 @@ TYPED_TEST(TruthTest, RefusesWhatTheEnergyLacks) {
   EXPECT_GT(FrobeniusNorm(truth.Nearest()), 0);
 }
 
+// Calls check(name, configuration) for every collision energy, at configurations of which none is
+// near the border of a region.
+template <class F>
+void ForEveryCollision(F check) {
+  for (const std::string_view name : kCollisions) {
+    SCOPED_TRACE(name);
+    if (name.starts_with(EdgeEdge::Name())) {
+      ForEdgePairs(2, [&](const EdgePair& pair) { check(name, pair); });
+    } else {
+      ForUnsignedVertexFaces(7, [&](const Configuration<double>& c) { check(name, ToQuad(c)); });
+    }
+  }
+}
+
 TEST(Truth, AgreesBetweenDoubleAndQuad) {
   const auto to_double = [](const Matrix<Quad>& a) {
     Matrix<double> b(a.rows, a.cols);
     for (int i = 0; i < a.rows * a.cols; ++i) b[i] = static_cast<double>(a[i]);
     return b;
   };
-  ForRandomConfigurations(20, [&](const Configuration<double>& c) {
-    Truth<double> rough = TruthOf<double>(c);
-    Truth<Quad> exact = TruthOf<Quad>(c);
+  ForEveryCollision([&](std::string_view name, const Configuration<Quad>& c) {
+    Configuration<double> rounded;
+    for (size_t i = 0; i < 12; ++i) rounded.x.data()[i] = static_cast<double>(c.x.data()[i]);
+    for (size_t i = 0; i < 3; ++i) rounded.p.data()[i] = static_cast<double>(c.p.data()[i]);
+    Truth<double> rough = TruthOf<double>(name, rounded);
+    Truth<Quad> exact = TruthOf<Quad>(name, rounded);
+    EXPECT_TRUE(rough.Active() && exact.Active());
     EXPECT_NEAR(rough.Value(), static_cast<double>(exact.Value()), 1e-12 * rough.Value());
     EXPECT_LT(Difference(rough.Gradient(), to_double(exact.Gradient())), 1e-10);
     EXPECT_LT(Difference(rough.FrameMap(), to_double(exact.FrameMap())), 1e-10);
@@ -508,6 +1109,31 @@ TEST(Truth, AgreesBetweenDoubleAndQuad) {
                            to_double(filter.define(exact))),
                 1e-10)
           << filter.name;
+  });
+}
+
+TEST(Filters, OfTheFrameHaveTheDefinitionsOfTheirNamesakes) {
+  ForEveryCollision([](std::string_view energy, const Configuration<Quad>& c) {
+    const auto define = [&](std::string_view name) {
+      Truth<Quad> truth = TruthOf<Quad>(energy, c);
+      return FindFilter<Quad>(name)->define(truth).entries;
+    };
+    EXPECT_EQ(define("gauss_newton_frame"), define("gauss_newton"));
+    for (const std::string_view name : {"analytic_printed", "analytic_frame", "numeric_frame"})
+      EXPECT_EQ(define(name), define("analytic")) << name;
+  });
+}
+
+// |a| = 2 max(a, 0) - a, term by term.
+TEST(Filters, AbsoluteOnesAddWhatClampingAddsTwice) {
+  ForEveryCollision([](std::string_view energy, const Configuration<Quad>& c) {
+    Truth<Quad> truth = TruthOf<Quad>(energy, c);
+    for (const auto& [name, clamping] :
+         {std::pair("absolute", "analytic"), std::pair("absolute_numeric", "numeric")}) {
+      const Matrix<Quad> clamped = FindFilter<Quad>(clamping)->define(truth);
+      const Matrix<Quad> absolute = FindFilter<Quad>(name)->define(truth);
+      EXPECT_LT(Difference(absolute, clamped + (clamped - truth.Hessian())), 1e-29) << name;
+    }
   });
 }
 
@@ -547,8 +1173,12 @@ TYPED_TEST(TruthTest, TablesHoldEveryRowOnce) {
   };
   const auto energies = names(AllEnergies<T>());
   const auto filters = names(AllFilters<T>());
-  EXPECT_EQ(energies.count(kName), 1u);
-  for (const char* name : {"none", "gauss_newton", "analytic", "analytic_printed", "numeric"})
+  for (const std::string_view name :
+       {kName, kUnsignedVertexFace, kSigned, kUnsigned, kFrozen, kHybrid})
+    EXPECT_EQ(energies.count(name), 1u) << name;
+  for (const char* name :
+       {"none", "gauss_newton", "gauss_newton_frame", "analytic", "analytic_printed",
+        "analytic_frame", "numeric", "numeric_frame", "absolute", "absolute_numeric"})
     EXPECT_EQ(filters.count(name), 1u) << name;
   EXPECT_EQ(std::set(energies.begin(), energies.end()).size(), energies.size());
   EXPECT_EQ(std::set(filters.begin(), filters.end()).size(), filters.size());

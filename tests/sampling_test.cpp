@@ -450,10 +450,10 @@ TEST(Sampling, FillsAsManyCoordinatesAsTheEnergyHas) {
 }
 
 TEST(Sampling, KnowsWhichStencilsADistributionSupports) {
-  for (const std::string_view stencil : {"vertex_face", "edge_edge", "corner"}) {
+  for (const std::string_view stencil : {"vertex_face", "edge_edge", "corner", "hinge"}) {
     EXPECT_TRUE(FindDistribution("paper")->supports(stencil));
     EXPECT_TRUE(FindDistribution("normal")->supports(stencil));
-    EXPECT_EQ(FindDistribution("active")->supports(stencil), stencil != "corner");
+    EXPECT_EQ(FindDistribution("active")->supports(stencil), stencil != "hinge");
   }
 }
 

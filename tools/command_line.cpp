@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <numeric>
+#include <thread>
 
 namespace definite {
 
@@ -35,7 +36,9 @@ std::string NearNames(std::string_view word) {
   std::vector<std::string> names;
   for (const KernelRow& row : AllKernels()) names.push_back(row.name);
   const std::string glob = fmt::format("*{}*", word);
-  std::ranges::stable_sort(names, {}, [&](const std::string& n) { return EditDistance(glob, n); });
+  std::ranges::stable_sort(names, {}, [&](const std::string& n) {
+    return std::pair(EditDistance(glob, n), EditDistance(word, n));
+  });
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(3, names.size()); ++i) {
     text += "\n  " + names[i];
@@ -78,8 +81,8 @@ std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs
       return fnmatch(glob.c_str(), row.name.c_str(), 0) == 0;
     };
     if (std::ranges::none_of(AllKernels(), matches)) {
-      throw UsageError(fmt::format("--kernels '{}': no row has such a name; the nearest are:{}",
-                                   glob, NearNames(glob)));
+      throw UsageError(
+          fmt::format("--kernels '{}': no such row; the nearest are:{}", glob, NearNames(glob)));
     }
   }
   for (const KernelRow& row : AllKernels()) {
@@ -94,8 +97,8 @@ std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs
 
 const KernelRow& RowNamed(const std::string& name) {
   if (const KernelRow* row = FindKernel(name)) return *row;
-  throw UsageError(fmt::format("--kernel '{}': no such row; the nearest are:{}", name,
-                               NearNames(name)));
+  throw UsageError(
+      fmt::format("--kernel '{}': no such row; the nearest are:{}", name, NearNames(name)));
 }
 
 const Distribution& DistributionNamed(const std::string& name) {
@@ -128,6 +131,34 @@ void AddDistributionOption(CLI::App& command, std::string& name) {
 void AddSeedOption(CLI::App& command, std::string& seed) {
   command.add_option("--seed", seed, fmt::format("Seed of the configurations (default: {})", seed))
       ->type_name("N");
+}
+
+std::uint64_t RunOptions::Count() const {
+  return quick ? 100'000 : ParseCount("--count", count, 1);
+}
+
+std::uint64_t RunOptions::Seed() const { return ParseCount("--seed", seed, 0); }
+
+int RunOptions::Threads() const {
+  return static_cast<int>(threads ? ParseCount("--threads", *threads, 1, 1024)
+                                  : std::max(1u, std::thread::hardware_concurrency()));
+}
+
+void AddRunOptions(CLI::App& command, RunOptions& options) {
+  CLI::Option* count =
+      command
+          .add_option("--count", options.count,
+                      fmt::format("Configurations, such as 1000, 10M (default: {})", options.count))
+          ->type_name("N");
+  command.add_flag("--quick", options.quick, "The same as --count 1e5")->excludes(count);
+  AddSeedOption(command, options.seed);
+  command.add_option("--threads", options.threads, "Threads (default: all cores)")
+      ->type_name("N");
+}
+
+void AddJsonOption(CLI::App& command, std::optional<std::string>& path) {
+  command.add_option("--json", path, "Write the whole result to FILE, - is standard output")
+      ->type_name("FILE");
 }
 
 }  // namespace definite

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -33,7 +34,21 @@ std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs
 const KernelRow& RowNamed(const std::string& name);
 const Distribution& DistributionNamed(const std::string& name);
 
+// What a run over many configurations is told.
+struct RunOptions {
+  std::string count = "1e7", seed = "42";
+  std::optional<std::string> threads;
+  bool quick = false;
+
+  // Throw UsageError.
+  std::uint64_t Count() const;  // 10^5 if quick
+  std::uint64_t Seed() const;
+  int Threads() const;  // all cores if not given
+};
+
 // Options that several subcommands have.
+void AddRunOptions(CLI::App& command, RunOptions& options);
+void AddJsonOption(CLI::App& command, std::optional<std::string>& path);
 CLI::Option* AddKernelsOption(CLI::App& command, std::vector<std::string>& globs);
 void AddDistributionOption(CLI::App& command, std::string& name);
 void AddSeedOption(CLI::App& command, std::string& seed);
@@ -42,6 +57,7 @@ void AddSeedOption(CLI::App& command, std::string& seed);
 void AddSweep(CLI::App& app, int& exit_code);
 void AddReplay(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
+void AddReproduce(CLI::App& app, int& exit_code);
 
 // The words of the command line, as given.
 const std::vector<std::string>& CommandWords();

@@ -56,8 +56,8 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_help_flag("-h,--help", "Print this help");
-  app.set_version_flag("--version", [] { return DescribeBuild().dump(2); },
-                       "Print the commit and how it was built");
+  app.set_version_flag(
+      "--version", [] { return DescribeBuild().dump(2); }, "Print the commit and how it was built");
   app.footer(
       "Examples:\n"
       "  definite list --long\n"
@@ -68,6 +68,7 @@ int Run(int argc, char** argv) {
   AddSweep(app, exit_code);
   AddReplay(app, exit_code);
   AddList(app, exit_code);
+  AddReproduce(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version

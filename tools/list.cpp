@@ -19,8 +19,9 @@ void AddList(CLI::App& app, int&) {
   CLI::Option* kernels = AddKernelsOption(*command, options->kernels);
   CLI::Option* long_form =
       command->add_flag("--long", options->long_form, "Sources and parameters too");
-  command->add_flag("--promises", options->promises,
-                    "Instead what filters promise, and their exemptions")
+  command
+      ->add_flag("--promises", options->promises,
+                 "Instead what filters promise, and their exemptions")
       ->excludes(kernels)
       ->excludes(long_form);
   command->footer("Examples:\n  definite list\n  definite list --long --kernels '*/analytic/*'");

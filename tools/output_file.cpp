@@ -80,8 +80,8 @@ void OutputFile::RemoveTemporary() {
 }
 
 void OutputFile::Fail(const std::string& doing) const {
-  throw UsageError(fmt::format("{} '{}': cannot {} it: {}", option_, path_, doing,
-                               std::strerror(errno)));
+  throw UsageError(
+      fmt::format("{} '{}': cannot {} it: {}", option_, path_, doing, std::strerror(errno)));
 }
 
 }  // namespace definite

@@ -19,26 +19,21 @@ namespace definite {
 
 namespace {
 
-constexpr std::uint64_t kQuickCount = 100'000;
-
 struct Options {
   std::vector<std::string> kernels = {"*"};
   std::string distribution = "active";
-  std::string count = "1e7";
-  std::string seed = "42";
-  std::optional<std::string> threads, json;
-  bool quick = false, no_timing = false;
+  RunOptions run;
+  std::optional<std::string> json;
+  bool no_timing = false;
 };
 
 SweepPlan PlanOf(const Options& options) {
   SweepPlan plan;
   plan.rows = RowsMatching(options.kernels);
   plan.distribution = &DistributionNamed(options.distribution);
-  plan.count = options.quick ? kQuickCount : ParseCount("--count", options.count, 1);
-  plan.seed = ParseCount("--seed", options.seed, 0);
-  plan.threads = static_cast<int>(options.threads
-                                      ? ParseCount("--threads", *options.threads, 1, 1024)
-                                      : std::max(1u, std::thread::hardware_concurrency()));
+  plan.count = options.run.Count();
+  plan.seed = options.run.Seed();
+  plan.threads = options.run.Threads();
   plan.timing = !options.no_timing;
   std::erase_if(plan.rows, [&](const KernelRow* row) {
     return !plan.distribution->supports(row->energy->stencil);
@@ -82,18 +77,8 @@ void AddSweep(CLI::App& app, int& exit_code) {
       "sweep", "Times rows over drawn configurations, and checks what they give");
   AddKernelsOption(*command, options->kernels);
   AddDistributionOption(*command, options->distribution);
-  CLI::Option* count =
-      command
-          ->add_option("--count", options->count,
-                       fmt::format("Configurations, such as 1000, 10M (default: {})",
-                                   options->count))
-          ->type_name("N");
-  command->add_flag("--quick", options->quick, "The same as --count 1e5")->excludes(count);
-  AddSeedOption(*command, options->seed);
-  command->add_option("--threads", options->threads, "Threads (default: all cores)")
-      ->type_name("N");
-  command->add_option("--json", options->json, "Write the whole result to FILE, - is standard output")
-      ->type_name("FILE");
+  AddRunOptions(*command, options->run);
+  AddJsonOption(*command, options->json);
   command->add_flag("--no-timing", options->no_timing, "Check only");
   command->footer(
       "Times are thread CPU time on one thread, wall time on more; 'numeric / this' is the median\n"

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "benchmarks/harness/batch.hpp"
@@ -107,17 +108,22 @@ bool RunCheckedPass(const SweepPlan& plan, EnergyResult& result, Progress& progr
       const auto size =
           std::min<std::int64_t>(kBlock, static_cast<std::int64_t>(plan.count - first));
       batch.Draw(*plan.distribution, plan.seed, first, WholeTiles(size));
-      const RowOutputs exact(examiner.ExactRow(), batch), nearest(examiner.NearestRow(), batch);
-      std::vector<RowOutputs> outputs;
-      for (const KernelRow* row : rows) outputs.emplace_back(*row, batch);
+      // H and P may be among the rows asked for: each runs once.
+      std::vector<const KernelRow*> all = rows;
+      all.push_back(&examiner.ExactRow());
+      all.push_back(&examiner.NearestRow());
+      std::map<const KernelRow*, RowOutputs> outputs;
+      for (const KernelRow* row : all) outputs.try_emplace(row, *row, batch);
+      const RowOutputs &exact = outputs.at(&examiner.ExactRow()),
+                       &nearest = outputs.at(&examiner.NearestRow());
       for (std::int64_t i = 0; i < size; ++i) {
         const std::uint64_t index = first + static_cast<std::uint64_t>(i);
-        std::vector<Packed> mine_outputs;
+        std::vector<Packed> of_rows;
         for (std::size_t r = 0; r < rows.size(); ++r) {
-          mine_outputs.push_back(outputs[r].Of(i));
-          mine.rows[r].checksum += Checksum(mine_outputs.back(), index);
+          of_rows.push_back(outputs.at(rows[r]).Of(i));
+          mine.rows[r].checksum += Checksum(of_rows.back(), index);
         }
-        examiner.Examine(batch.X(i), batch.P(i), exact.Of(i), nearest.Of(i), mine_outputs,
+        examiner.Examine(batch.X(i), batch.P(i), exact.Of(i), nearest.Of(i), of_rows,
                          DepthOf(index, plan.count));
         Add(examiner, index, mine);
       }

@@ -37,7 +37,7 @@ Json Point(const SweepPlan& plan, const EnergyRow& energy, const Worst& worst,
 // `exact` is what float128 makes of the worst case, where it was asked and differs in principle.
 Json ToJson(const Figure& figure, const SweepPlan& plan, const EnergyRow& energy,
             const std::map<std::uint64_t, RowFigures>& worst_cases,
-            std::optional<double> RowFigures::*exact) {
+            std::optional<double> RowFigures::*exact, Detail detail) {
   const auto summary = figure.Summarize();
   if (!summary) return nullptr;
   std::optional<double> value;
@@ -51,11 +51,13 @@ Json ToJson(const Figure& figure, const SweepPlan& plan, const EnergyRow& energy
                {"p99", Number(summary->p99)},
                {"p999", Number(summary->p999)},
                {"max", Point(plan, energy, summary->max, value)}};
-  Json histogram = Json::array();
-  for (const Histogram::Bucket& bucket : figure.Values().Buckets()) {
-    histogram.push_back({bucket.lower, bucket.count});
+  json["histogram"] = nullptr;
+  if (detail == Detail::kWithHistograms) {
+    json["histogram"] = Json::array();
+    for (const Histogram::Bucket& bucket : figure.Values().Buckets()) {
+      json["histogram"].push_back({bucket.lower, bucket.count});
+    }
   }
-  json["histogram"] = std::move(histogram);
   return json;
 }
 
@@ -67,9 +69,12 @@ Json ToJson(const std::optional<MedianEstimate>& estimate, double factor) {
           {"high", estimate->high * factor}};
 }
 
-const RowResult* Baseline(const EnergyResult& energy) {
+// Whom the rows are compared with: scalar rows of these filters.
+constexpr std::string_view kBaselines[] = {"numeric", "gauss_newton", "gauss_newton_frame"};
+
+const RowResult* Baseline(const EnergyResult& energy, std::string_view filter) {
   for (const RowResult& r : energy.rows) {
-    if (r.row->filter == "numeric" && r.row->scalar == "f64") return &r;
+    if (r.row->filter == filter && r.row->scalar == "f64") return &r;
   }
   return nullptr;
 }
@@ -88,7 +93,8 @@ double Fraction(std::uint64_t part, std::uint64_t whole) {
   return whole ? static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
 
-Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowResult& r) {
+Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowResult& r,
+               Detail detail) {
   const SweepPlan& plan = result.plan;
   const EnergyStatistics& e = energy.statistics;
   const RowStatistics& s = r.statistics;
@@ -114,12 +120,15 @@ Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowR
     timing["ring_configurations"] = kRing;
     timing["stages"] = {"frame", "hessian", "filter", "write"};
     timing["ns_per_hessian"] = ToJson(EstimateMedian(r.timing.rounds), 1e9);
-    timing["ratio_to"] = {{"numeric", ToJson(RatioTo(Baseline(energy), r), 1)},
-                          {"floor", nullptr}};
+    for (std::string_view filter : kBaselines) {
+      timing["ratio_to"][std::string(filter)] =
+          ToJson(RatioTo(Baseline(energy, filter), r), 1);
+    }
+    timing["ratio_to"]["floor"] = nullptr;
     row["timing"].push_back(timing);
   }
   const auto figure = [&](const Figure& f, std::optional<double> RowFigures::*exact) {
-    return ToJson(f, plan, *energy.energy, r.worst_cases, exact);
+    return ToJson(f, plan, *energy.energy, r.worst_cases, exact, detail);
   };
   row["accuracy"] = {{"distance", figure(s.distance, &RowFigures::distance)},
                      {"excess", figure(s.excess, &RowFigures::excess)},
@@ -164,7 +173,9 @@ std::string VerdictSummary(const RowStatistics& s) {
                     Verdict::kOutOfDomain}) {
     const auto i = static_cast<std::size_t>(v);
     if (s.verdicts[i]) {
-      return fmt::format("{} {:.3g} %", kVerdictNames[i], 100 * Fraction(s.verdicts[i], total));
+      const double percent = 100 * Fraction(s.verdicts[i], total);
+      return percent < 1 ? fmt::format("{} <1%", kVerdictNames[i])
+                         : fmt::format("{} {:.0f}%", kVerdictNames[i], percent);
     }
   }
   return "pass";
@@ -179,7 +190,7 @@ std::string WithCommas(std::uint64_t value) {
   return fmt::format("{},{:03}", WithCommas(value / 1000), value % 1000);
 }
 
-Json ToJson(const SweepResult& result, const std::vector<std::string>& command) {
+Json ToJson(const SweepResult& result, const std::vector<std::string>& command, Detail detail) {
   Json json;
   json["schema"] = "definite/1";
   json["protocol"] = ProtocolHash();
@@ -190,7 +201,9 @@ Json ToJson(const SweepResult& result, const std::vector<std::string>& command) 
   json["partial"] = result.partial;
   json["rows"] = Json::array();
   for (const EnergyResult& energy : result.energies) {
-    for (const RowResult& r : energy.rows) json["rows"].push_back(RowToJson(result, energy, r));
+    for (const RowResult& r : energy.rows) {
+      json["rows"].push_back(RowToJson(result, energy, r, detail));
+    }
   }
   return json;
 }
@@ -204,22 +217,21 @@ std::string ToTable(const SweepResult& result) {
                          energy.energy->name, result.plan.distribution->name, result.plan.seed,
                          WithCommas(e.count), 100 * Fraction(e.active, e.count),
                          100 * Fraction(e.indefinite, e.active));
-    table += fmt::format("{:<17}{:<6}{:>8}{:>9} |{:>24} |{:>8}{:>8}{:>8} | {}\n", "", "", "ns per",
-                         "numeric", "distance to nearest  ", "rounding", "PSD", "relab.", "");
-    table += fmt::format("{:<17}{:<6}{:>8}{:>9} |{:>8}{:>8}{:>8} |{:>8}{:>8}{:>8} | {}\n", "filter",
-                         "", "Hessian", "/ this", "median", "p99", "max", "max", "defect", "spread",
-                         "verdict");
+    table += fmt::format("{:<19}{:<6}{:>7}{:>8} |{:>24} |{:>8}{:>8} |\n", "", "", "ns per",
+                         "numeric", "distance to nearest  ", "rounding", "PSD");
+    table += fmt::format("{:<19}{:<6}{:>7}{:>8} |{:>8}{:>8}{:>8} |{:>8}{:>8} | {}\n", "filter", "",
+                         "Hessian", "/ this", "median", "p99", "max", "max", "defect", "verdict");
     for (const RowResult& r : energy.rows) {
       const RowStatistics& s = r.statistics;
       const auto time = EstimateMedian(r.timing.rounds);
-      const auto ratio = RatioTo(Baseline(energy), r);
+      const auto ratio = RatioTo(Baseline(energy, "numeric"), r);
       table += fmt::format(
-          "{:<17}{:<6}{:>8}{:>9} |{:>8}{:>8}{:>8} |{:>8}{:>8}{:>8} | {}\n", r.row->filter,
+          "{:<19}{:<6}{:>7}{:>8} |{:>8}{:>8}{:>8} |{:>8}{:>8} | {}\n", r.row->filter,
           r.row->scalar, time ? fmt::format("{:.1f}", time->median * 1e9) : "-",
           ratio ? fmt::format("{:.1f}", ratio->median) : "-",
           Short(s.distance, &Figure::Summary::median), Short(s.distance, &Figure::Summary::p99),
           ShortMax(s.distance), ShortMax(s.conditioned_rounding), ShortMax(s.psd_defect),
-          ShortMax(s.relabelling), VerdictSummary(s));
+          VerdictSummary(s));
     }
     table += "\n";
   }

@@ -9,7 +9,10 @@
 
 namespace definite {
 
-nlohmann::ordered_json ToJson(const SweepResult& result, const std::vector<std::string>& command);
+enum class Detail { kSummaries, kWithHistograms };
+
+nlohmann::ordered_json ToJson(const SweepResult& result, const std::vector<std::string>& command,
+                              Detail detail = Detail::kWithHistograms);
 
 // Readable at 100 columns.
 std::string ToTable(const SweepResult& result);

@@ -2,9 +2,15 @@
 
 // Small fixed-size vectors over any scalar type.
 
+#include <utility>
+
 #include "kernels/core/mathfun.hpp"
 
 namespace definite {
+
+// What a comparison gives: bool, or a mask over lanes.
+template <class T>
+using MaskOf = decltype(std::declval<T>() <= std::declval<T>());
 
 template <class T, int N>
 struct Vec {
@@ -85,5 +91,11 @@ DEFINITE_INLINE Vec<T, 3 * N> AddKron(const Vec<T, 3 * N>& r, const Vec<T, N>& u
   }
   return s;
 }
+
+// The three edges a collision length is made of.
+template <class T>
+struct Edges {
+  Vec3<T> e0, e1, e2;
+};
 
 }  // namespace definite

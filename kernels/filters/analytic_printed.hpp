@@ -15,6 +15,7 @@ struct AnalyticPrinted {
       {Property::kAccurate, "loses digits like u/|l| and u/sin^2, as printed"},
       {Property::kPsd, "NaN where it is not finite"},
       {Property::kMajorises, "an inaccurate clamp majorises only roughly"},
+      {Property::kRigidMotion, "the digits it loses change with the way the pair lies"},
       {Property::kScale, "over- and underflows without a common unit of length"},
       {Property::kRelabelling, "the paper's frame starts at e0, and the frame map is not orthogonal"},
   };

@@ -15,7 +15,7 @@ struct None {
 
   template <class E, class T>
   static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    return E::template HessianModes<Set::kFrame, Part::kAll>(x, p);
+    return E::template HessianModes<Set::kExact, Part::kAll>(x, p);
   }
 };
 

@@ -21,10 +21,6 @@ struct VertexFace {
 
   // e0 = x1 - x2, e1 = x3 - x2, e2 = x0 - x2.
   template <class T>
-  struct Edges {
-    Vec3<T> e0, e1, e2;
-  };
-  template <class T>
   static DEFINITE_INLINE Edges<T> EdgesOf(const Vec<T, kDofs>& x) {
     const Vec3<T> x2 = Vertex(x, 2);
     return {Vertex(x, 1) - x2, Vertex(x, 3) - x2, Vertex(x, 0) - x2};

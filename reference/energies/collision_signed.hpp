@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string_view>
+#include <string>
 
 #include "reference/energy.hpp"
 #include "reference/penalties.hpp"
@@ -13,19 +13,18 @@ namespace definite::reference {
 // e1 span a plane (SpanPlane).
 template <class Stencil>
 struct Signed {
-  static constexpr std::string_view kSigned = "signed";
-  static constexpr std::string_view kName = JoinedName<Stencil::kName, kSigned>::kName;
+  static std::string Name() { return Stencil::Name() + "/signed"; }
   static constexpr int kDofs = Stencil::kDofs;
   static constexpr int kParams = 3;
   static constexpr int kFrameDofs = 9;
 
   template <class S, class T>
   static S Length(const S* x, const T* p) {
-    return Along(Stencil::EdgesOf(x), p[2]);
+    return Turned(AlongNormal(Stencil::EdgesOf(x)), p[2]);
   }
   template <class S, class T>
-  static S FrameLength(const S* c, const T* p) {
-    return Along(Edges<S>{Block(c, 0), Block(c, 1), Block(c, 2)}, p[2]);
+  static S FrameLength(const S* c, const T*, const T* p) {
+    return Turned(AlongNormal(FrameEdges(c)), p[2]);
   }
   template <class S, class T>
   static auto FrameAt(const S* x, const T* at, const T*) {
@@ -42,13 +41,12 @@ struct Signed {
 
  private:
   template <class S, class T>
-  static S Along(const Edges<S>& e, const T& side) {
-    const Vec3<S> normal = Cross(e.e0, e.e1);
-    const S l = Dot(normal, e.e2) / Norm(normal);
+  static S Turned(const S& l, const T& side) {
     return side < 0 ? -l : l;
   }
 };
 
 DEFINITE_REFERENCE_ENERGY(PenaltyOf<Signed<VertexFace>, Quadratic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<Signed<EdgeEdge>, Quadratic>);
 
 }  // namespace definite::reference

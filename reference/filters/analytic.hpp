@@ -2,17 +2,17 @@
 
 #include <string_view>
 
-#include "reference/filter.hpp"
+#include "reference/frame_filter.hpp"
 
 namespace definite::reference {
 
-// Clamp in the reduced frame, then pull back (Shi & Kim 2023, section 4).
+// Clamp in the reduced frame, then pull back (Shi & Kim 2023, section 4; with a remainder, Eq. 17).
 struct Analytic {
   static constexpr std::string_view kName = "analytic";
 
   template <class T>
   static Matrix<T> Define(Truth<T>& truth) {
-    return Congruence(NearestPsd(SpectrumOf(truth.FrameHessian())), truth.FrameMap());
+    return FilterInFrame(truth, Clamp<T>);
   }
 };
 

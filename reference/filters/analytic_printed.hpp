@@ -2,19 +2,13 @@
 
 #include <string_view>
 
-#include "reference/filter.hpp"
 #include "reference/filters/analytic.hpp"
 
 namespace definite::reference {
 
 // The paper's printed formulas mean the same matrix as the stable ones.
-struct AnalyticPrinted {
+struct AnalyticPrinted : Analytic {
   static constexpr std::string_view kName = "analytic_printed";
-
-  template <class T>
-  static Matrix<T> Define(Truth<T>& truth) {
-    return Analytic::Define(truth);
-  }
 };
 
 DEFINITE_REFERENCE_FILTER(AnalyticPrinted);

@@ -11,6 +11,7 @@ namespace definite::distributions {
 // both edges, and a signed length l uniform in (-eps, eps). Conventions as in the stencils, x2 at
 // the origin, n = e0 x e1 / |e0 x e1|, l = n.e2:
 //   vertex_face  e0 = x1-x2, e1 = x3-x2, e2 = x0-x2 = beta e0 + gamma e1 + l n
+//   corner       three iid N(0,1) vertices: a strand is always active
 //   edge_edge    e0 = x1-x0, e1 = x3-x2, e2 = x2-x0 = a e0 - b e1 + l n
 struct Active {
   static constexpr std::string_view kName = "active";
@@ -20,14 +21,16 @@ struct Active {
   static constexpr ParameterValue kParameters[] = {{"k", 1}, {"eps", kEps}, {"side", 0}};
 
   static bool Supports(std::string_view stencil) {
-    return stencil == "vertex_face" || stencil == "edge_edge";
+    return stencil == "vertex_face" || stencil == "edge_edge" || stencil == "corner";
   }
 
   static void DrawCoordinates(const DrawTarget& target, Draws& draws, double* x) {
     if (target.stencil == "vertex_face") {
       DrawVertexFace(draws, x);
-    } else {
+    } else if (target.stencil == "edge_edge") {
       DrawEdgeEdge(draws, x);
+    } else {
+      DrawCorner(draws, x);
     }
   }
 
@@ -70,6 +73,10 @@ struct Active {
       x[6 + i] = 0;
       x[9 + i] = e1[i];
     }
+  }
+
+  static void DrawCorner(Draws& draws, double* x) {
+    for (int i = 0; i < 9; ++i) x[i] = draws.Normal();
   }
 
   static void DrawEdgeEdge(Draws& draws, double* x) {

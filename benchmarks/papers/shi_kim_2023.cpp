@@ -1,0 +1,340 @@
+#include "benchmarks/papers/shi_kim_2023.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <stdexcept>
+
+#include "benchmarks/harness/report.hpp"
+#include "benchmarks/papers/markdown.hpp"
+
+namespace definite {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Table 1: seconds for 10^7 random arrangements.
+struct PublishedRow {
+  std::string label, energy;
+  double numeric, analytic, gauss_newton;
+};
+const std::array<PublishedRow, 5> kTable1 = {{
+    {"vertex-face signed", "collision/vertex_face/signed/quadratic", 88.48, 12.31, 11.12},
+    {"vertex-face unsigned", "collision/vertex_face/unsigned/quadratic", 83.68, 18.55, 10.93},
+    {"edge-edge signed", "collision/edge_edge/signed/quadratic", 84.30, 13.01, 12.04},
+    {"edge-edge unsigned", "collision/edge_edge/unsigned_frozen/quadratic", 86.45, 11.98, 8.78},
+    {"edge-edge hybrid", "collision/edge_edge/hybrid/quadratic", 85.16, 13.52, 12.29},
+}};
+
+// The exact Hessian of the clamped distance, which the paper does not have.
+const std::string kEnvelope = "collision/edge_edge/unsigned/quadratic";
+
+// The filters of the tables: row name after the energy, and how it reads.
+const std::vector<std::pair<std::string, std::string>> kFilters = {
+    {"numeric/f64", "numeric 12x12"},
+    {"numeric_frame/f64", "numeric 9x9 in the frame"},
+    {"analytic_frame/f64", "analytic, as the paper writes it"},
+    {"analytic/f64", "analytic, stable"},
+    {"analytic/f64x8", "analytic, stable, 8 lanes"},
+    {"gauss_newton_frame/f64", "Gauss-Newton through the frame"},
+    {"gauss_newton/f64", "Gauss-Newton, outer product"},
+    {"gauss_newton/f64x8", "Gauss-Newton, 8 lanes"},
+};
+
+const Json& RowOf(const Json& result, const std::string& energy, const std::string& filter) {
+  const std::string name = energy + "/" + filter;
+  for (const Json& row : result.at("rows")) {
+    if (row.at("kernel") == name && row.at("distribution") == ShiKim2023::kDistribution) return row;
+  }
+  throw std::runtime_error("the result lacks the row " + name);
+}
+
+struct Interval {
+  double median, low, high;
+};
+
+std::optional<Interval> IntervalOf(const Json& estimate) {
+  if (estimate.is_null()) return std::nullopt;
+  return Interval{estimate.at("median"), estimate.at("low"), estimate.at("high")};
+}
+
+std::optional<Interval> NsOf(const Json& row) {
+  if (row.at("timing").empty()) return std::nullopt;
+  return IntervalOf(row.at("timing")[0].at("ns_per_hessian"));
+}
+
+// time of `baseline` / time of the row.
+std::optional<Interval> RatioTo(const Json& row, const std::string& baseline) {
+  if (row.at("timing").empty()) return std::nullopt;
+  return IntervalOf(row.at("timing")[0].at("ratio_to").at(baseline));
+}
+
+std::optional<Interval> Inverse(const std::optional<Interval>& r) {
+  if (!r) return r;
+  return Interval{1 / r->median, 1 / r->high, 1 / r->low};
+}
+
+double NumberOf(const Json& value) {
+  if (value.is_string()) {
+    return value == "nan" ? std::numeric_limits<double>::quiet_NaN()
+                          : std::numeric_limits<double>::infinity();
+  }
+  return value;
+}
+
+// A figure's entry, such as distance / median.
+std::optional<double> Accuracy(const Json& row, const std::string& figure,
+                               const std::string& entry) {
+  const Json& f = row.at("accuracy").at(figure);
+  if (f.is_null()) return std::nullopt;
+  return NumberOf(entry == "max" ? f.at("max").at("value") : f.at(entry));
+}
+
+std::string Show(const std::optional<double>& value, const char* format) {
+  return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+std::string Show(const std::optional<Interval>& r, const char* format) {
+  return r ? fmt::format(fmt::runtime(format), r->median) : "-";
+}
+std::string ShowInterval(const std::optional<Interval>& r) {
+  return r ? fmt::format("{:.2f} [{:.2f}, {:.2f}]", r->median, r->low, r->high) : "not timed";
+}
+
+Json Claim(const std::string& claim, const std::string& theirs, const std::string& ours,
+           const std::string& verdict, const std::string& reason) {
+  return {{"claim", claim}, {"theirs", theirs}, {"ours", ours}, {"verdict", verdict},
+          {"reason", reason}};
+}
+
+Json SpeedClaim(const Json& result, const PublishedRow& published) {
+  const double theirs = published.numeric / published.analytic;
+  const auto paper_form = RatioTo(RowOf(result, published.energy, "analytic_frame/f64"), "numeric");
+  const auto stable = RatioTo(RowOf(result, published.energy, "analytic/f64"), "numeric");
+  std::string verdict = "not reproduced";
+  std::string reason = "the analytic form is faster than the eigendecomposition, but by less";
+  if (!paper_form) {
+    reason = "not timed in this run";
+  } else if (paper_form->high >= theirs) {
+    verdict = "reproduced";
+    reason = "through the 12x9 and 9x9 products of the reduced frame";
+  } else if (stable && stable->low >= theirs) {
+    verdict = "qualified";
+    reason = "less through the frame's products, more as three outer products in x-space";
+  }
+  return Claim(fmt::format("{}: analytic is {:.2f} times faster than numeric", published.label,
+                           theirs),
+               fmt::format("{:.2f}", theirs), ShowInterval(paper_form), verdict, reason);
+}
+
+Json OverheadClaim(const Json& result, const PublishedRow& published) {
+  const double theirs = published.analytic / published.gauss_newton;
+  const auto frame = Inverse(
+      RatioTo(RowOf(result, published.energy, "analytic_frame/f64"), "gauss_newton_frame"));
+  const auto outer =
+      Inverse(RatioTo(RowOf(result, published.energy, "analytic_frame/f64"), "gauss_newton"));
+  const std::string claim =
+      fmt::format("{}: analytic costs {:.0f} % more than Gauss-Newton", published.label,
+                  100 * (theirs - 1));
+  if (!frame || !outer) {
+    return Claim(claim, fmt::format("{:.2f}", theirs), "not timed", "not reproduced",
+                 "not timed in this run");
+  }
+  const bool holds = frame->low <= theirs;
+  return Claim(
+      claim, fmt::format("{:.2f}", theirs), ShowInterval(frame), holds ? "qualified" : "not reproduced",
+      fmt::format("{} if Gauss-Newton goes through the same 12x9 and 9x9 products; against the "
+                  "single outer product that it is, {:.1f} times its cost",
+                  holds ? "holds" : "more even", outer->median));
+}
+
+Json PsdClaim(const Json& result) {
+  double worst = 0;
+  std::uint64_t non_psd = 0, checked = 0;
+  for (const PublishedRow& published : kTable1) {
+    const Json& row = RowOf(result, published.energy, "analytic/f64");
+    worst = std::max(worst, Accuracy(row, "psd_defect", "max").value_or(0));
+    non_psd += row.at("verdicts").at("non_psd").get<std::uint64_t>() +
+               row.at("verdicts").at("non_finite").get<std::uint64_t>();
+    checked += row.at("active").get<std::uint64_t>();
+  }
+  return Claim("the filtered Hessian is positive semidefinite", "always",
+               fmt::format("{} of {} not", WithCommas(non_psd), WithCommas(checked)),
+               non_psd == 0 ? "reproduced" : "not reproduced",
+               fmt::format("worst -lambda_min/(n u |F|) is {:.2g}; 50 is the bound", worst));
+}
+
+// Pinning the negative eigenvalues of the frame is not the nearest PSD matrix of the Hessian.
+Json ProjectionClaim(const Json& result) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const PublishedRow& published : kTable1) {
+    if (published.energy.find("edge_edge/unsigned") != std::string::npos) continue;
+    const double median =
+        Accuracy(RowOf(result, published.energy, "analytic/f64"), "distance", "median").value_or(0);
+    least = std::min(least, median);
+    most = std::max(most, median);
+  }
+  return Claim("clamping in the reduced frame stands in for the numerical projection", "implied",
+               fmt::format("distance to it, medians {:.2g} to {:.2g}", least, most), "qualified",
+               "it equals the clamp of the 9x9 frame; the nearest PSD matrix of the 12x12 Hessian "
+               "is another one, since the frame map is not orthogonal");
+}
+
+Json FrozenClaim(const Json& result) {
+  const Json& row = RowOf(result, kTable1[3].energy, "analytic/f64");
+  return Claim("edge-edge unsigned: clamping resolves what Gauss-Newton lets pass", "Fig. 1",
+               fmt::format("distance to nearest at most {}",
+                           Show(Accuracy(row, "distance", "max"), "{:.1e}")),
+               "qualified",
+               "with the weights held constant (Eq. 53) the filter is the nearest PSD matrix of "
+               "that Hessian, and outside contact it is Gauss-Newton, identically; they differ "
+               "only for penetrating pairs");
+}
+
+}  // namespace
+
+std::vector<std::string> ShiKim2023::Rows() {
+  std::vector<std::string> rows;
+  for (const PublishedRow& published : kTable1) {
+    for (const auto& [filter, label] : kFilters) rows.push_back(published.energy + "/" + filter);
+  }
+  for (const auto& [filter, label] : kFilters) rows.push_back(kEnvelope + "/" + filter);
+  return rows;
+}
+
+Json ShiKim2023::Claims(const Json& result) {
+  Json claims = Json::array();
+  for (const PublishedRow& p : kTable1) claims.push_back(SpeedClaim(result, p));
+  for (const PublishedRow& p : kTable1) claims.push_back(OverheadClaim(result, p));
+  claims.push_back(PsdClaim(result));
+  claims.push_back(ProjectionClaim(result));
+  claims.push_back(FrozenClaim(result));
+  return claims;
+}
+
+std::string ShiKim2023::Markdown(const Json& result) {
+  const Json& first = result.at("rows").at(0);
+  const std::uint64_t count = first.at("count");
+  const auto seconds = [&](const PublishedRow& p, const std::string& filter) {
+    const auto ns = NsOf(RowOf(result, p.energy, filter));
+    return ns ? fmt::format("{:.2f}", ns->median * 1e-9 * 1e7) : "-";
+  };
+  std::string text = "### Table 1: seconds for 10^7 Hessians\n\n";
+  std::vector<std::vector<std::string>> table = {{"", "numeric", "analytic", "G-N", "ratio",
+                                                  "numeric", "analytic", "G-N", "ratio"}};
+  for (const PublishedRow& p : kTable1) {
+    table.push_back({p.label, fmt::format("{:.2f}", p.numeric), fmt::format("{:.2f}", p.analytic),
+                     fmt::format("{:.2f}", p.gauss_newton),
+                     fmt::format("{:.2f}", p.numeric / p.analytic), seconds(p, "numeric/f64"),
+                     seconds(p, "analytic_frame/f64"), seconds(p, "gauss_newton_frame/f64"),
+                     Show(RatioTo(RowOf(result, p.energy, "analytic_frame/f64"), "numeric"),
+                          "{:.2f}")});
+  }
+  text += MarkdownTable(table);
+  const std::string clock =
+      first.at("timing").empty()
+          ? "not timed"
+          : fmt::format("{} of {} thread(s)",
+                        first.at("timing")[0].at("clock") == "wall" ? "wall time" : "CPU time",
+                        first.at("timing")[0].at("threads").get<int>());
+  text += "\n" + Wrapped(fmt::format(
+                             "Theirs on the left, ours on the right, analytic and Gauss-Newton (G-N) "
+                             "through the 12x9 and 9x9 products of the reduced frame; {}, measured over {} configurations "
+                             "of `{}`, seed {}.",
+                             clock, WithCommas(count), kDistribution,
+                             result.at("seed").get<std::uint64_t>()),
+                         98, "");
+
+  text += "\n### What it depends on: the same filters in other forms\n\n";
+  table = {{"numeric / analytic", "paper", "frame", "stable", "8 lanes", "active %"}};
+  for (const PublishedRow& p : kTable1) {
+    const auto ratio = [&](const std::string& filter) {
+      return Show(RatioTo(RowOf(result, p.energy, filter), "numeric"), "{:.1f}");
+    };
+    table.push_back({p.label, fmt::format("{:.1f}", p.numeric / p.analytic),
+                     ratio("analytic_frame/f64"), ratio("analytic/f64"), ratio("analytic/f64x8"),
+                     fmt::format("{:.4g}", 100 * RowOf(result, p.energy, "analytic/f64")
+                                                     .at("active_fraction")
+                                                     .get<double>())});
+  }
+  text += MarkdownTable(table) + "\n";
+  table = {{"analytic / Gauss-Newton", "paper", "frame / frame", "frame / outer", "stable / outer",
+            "+ ns: frame", "stable"}};
+  for (const PublishedRow& p : kTable1) {
+    const auto over = [&](const std::string& filter, const std::string& baseline) {
+      return Show(Inverse(RatioTo(RowOf(result, p.energy, filter), baseline)), "{:.2f}");
+    };
+    const auto increment = [&](const std::string& filter, const std::string& baseline) {
+      const auto a = NsOf(RowOf(result, p.energy, filter));
+      const auto b = NsOf(RowOf(result, p.energy, baseline));
+      return a && b ? fmt::format("{:.0f}", a->median - b->median) : "-";
+    };
+    table.push_back({p.label, fmt::format("{:.2f}", p.analytic / p.gauss_newton),
+                     over("analytic_frame/f64", "gauss_newton_frame"),
+                     over("analytic_frame/f64", "gauss_newton"),
+                     over("analytic/f64", "gauss_newton"),
+                     increment("analytic_frame/f64", "gauss_newton_frame/f64"),
+                     increment("analytic/f64", "gauss_newton/f64")});
+  }
+  text += MarkdownTable(table);
+
+  text += "\n### Speed beside accuracy\n";
+  std::vector<std::pair<std::string, std::string>> energies;
+  for (const PublishedRow& p : kTable1) energies.emplace_back(p.label, p.energy);
+  energies[3].first += ", weights held constant";
+  energies.emplace_back("edge-edge unsigned, exact Hessian", kEnvelope);
+  for (const auto& [label, energy] : energies) {
+    text += "\n" + label + "\n\n";
+    table = {{"filter", "ns", "dist. median", "p99", "max", "excess", "PSD defect", "relabel."}};
+    for (const auto& [filter, name] : kFilters) {
+      const Json& row = RowOf(result, energy, filter);
+      table.push_back({name, Show(NsOf(row), "{:.1f}"),
+                       Show(Accuracy(row, "distance", "median"), "{:.1e}"),
+                       Show(Accuracy(row, "distance", "p99"), "{:.1e}"),
+                       Show(Accuracy(row, "distance", "max"), "{:.1e}"),
+                       Show(Accuracy(row, "excess", "median"), "{:.2f}"),
+                       Show(Accuracy(row, "psd_defect", "max"), "{:.2g}"),
+                       Show(Accuracy(row, "relabelling", "median"), "{:.1e}")});
+    }
+    text += MarkdownTable(table);
+  }
+  text += "\n" + Wrapped("Distance is to the nearest PSD matrix of the row's own Hessian, excess "
+                         "how much more the filter changes it than it must (median), PSD defect "
+                         "the worst -lambda_min/(n u |F|) (50 is the bound), relabel. how much the "
+                         "result depends on the numbering of the vertices (median).",
+                         98, "");
+
+  text += "\n### Claims\n\n";
+  for (const Json& claim : result.at("claims")) {
+    text += Wrapped(fmt::format("- **{}**: {}. Paper: {}; here: {}; {}.",
+                                claim.at("verdict").get<std::string>(),
+                                claim.at("claim").get<std::string>(),
+                                claim.at("theirs").get<std::string>(),
+                                claim.at("ours").get<std::string>(),
+                                claim.at("reason").get<std::string>()),
+                    98, "  ");
+  }
+  const Json& machine = result.at("machine");
+  const Json& build = result.at("build");
+  text += "\n" + Wrapped(fmt::format("Machine: {}, {} cores, load {:.2f}{}. Build: {}, {}, {}, "
+                                     "Eigen {}, commit {}.",
+                                     machine.at("cpu").is_null()
+                                         ? "unknown"
+                                         : machine.at("cpu").get<std::string>(),
+                                     machine.at("cores").get<int>(),
+                                     machine.at("load_average").is_null()
+                                         ? 0.0
+                                         : machine.at("load_average").get<double>(),
+                                     machine.at("noisy").get<bool>() ? " (noisy)" : "",
+                                     build.at("compiler").get<std::string>(),
+                                     build.at("flags").get<std::string>(),
+                                     build.at("isa").get<std::string>(),
+                                     build.at("eigen").get<std::string>(),
+                                     build.at("commit").get<std::string>()),
+                         98, "");
+  return text;
+}
+
+}  // namespace definite

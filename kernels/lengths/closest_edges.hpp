@@ -1,0 +1,200 @@
+#pragma once
+
+// Lengths between two edges whose closest points are clamped to both.
+//
+// Source: Shi & Kim 2023, Eqs. 25, 36-48, 53, and Cheng's hybrid as their section 5.2.1 and Table 1
+// use it.
+// Differs: the two parameters are clamped jointly (one by one would be wrong for half of all random
+// pairs); Eq. 25 with the right activation test; in the interior the normal comes from the cross
+// product, never from a difference of close points.
+// Domain: both edges longer than nothing, and the distance above kLeastLength. Parallel edges are
+// in it: their closest points are taken at an endpoint.
+
+#include "kernels/lengths/unsigned_plane.hpp"
+#include "kernels/stencils/edge_edge.hpp"
+
+namespace definite {
+
+// Which Hessian a pair has when a closest point is an endpoint, and inside.
+enum class Clamped {
+  kEnvelope,  // inside free, at an endpoint as the distance to a vertex: the exact Hessian
+  kFrozen,    // parameters held constant everywhere, Eq. 53
+  kHybrid,    // inside signed, at an endpoint frozen
+};
+
+// The regions that Classify tells apart.
+inline constexpr double kInterior = 0, kVertexEdge = 1, kVertexVertex = 2;
+
+template <Clamped kKind>
+struct ClosestEdges {
+  using Stencil = EdgeEdge;
+  static constexpr std::string_view kName = kKind == Clamped::kEnvelope ? "unsigned"
+                                            : kKind == Clamped::kFrozen ? "unsigned_frozen"
+                                                                        : "hybrid";
+  static constexpr std::string_view kSource =
+      kKind == Clamped::kEnvelope ? "Shi & Kim 2023, Eqs. 16, 25, 36-40; envelope theorem"
+      : kKind == Clamped::kFrozen ? "Shi & Kim 2023, Eqs. 25, 36-48, 53"
+                                  : "Shi & Kim 2023, section 5.2.1 after Cheng et al. 2022";
+  static constexpr std::string_view kSide =
+      kKind == Clamped::kHybrid
+          ? "sign of the triple product: -1 flips it, +1 and 0 keep it"
+          : "+1 outside, -1 penetrating, 0 by the sign of the triple product";
+  static constexpr Tangents kTangents =
+      kKind == Clamped::kFrozen ? Tangents::kFixed : Tangents::kByRegion;
+
+  template <class T>
+  static DEFINITE_INLINE CollisionFrame<T> FrameOf(const Vec<T, 12>& x, const T& side) {
+    CollisionFrame<T> f;
+    Edges<T> edges = Stencil::EdgesOf(x);
+    Prescale(edges, f);
+    const Plane<T> plane = PlaneOf(edges);
+    const T triple = Select(plane.parallel, T(0.0), Dot(plane.normal, edges.e2));
+    const T sign = Select(triple < T(0.0), T(-1.0), T(1.0));
+    const T s = kKind == Clamped::kHybrid
+                    ? Select(Orientation(side) * triple < T(0.0), T(-1.0), T(1.0))
+                    : SideOrSignOf(side, triple);
+    // Inside, the length is s |triple|; for the hybrid that is the signed length.
+    SetPlane<Stencil>(plane, edges, s * sign, f);
+    const auto endpoint = plane.parallel | (plane.beta <= T(0.0)) | (plane.beta >= T(1.0)) |
+                          (plane.gamma >= T(0.0)) | (plane.gamma <= T(-1.0));
+    SetEndpoint(edges, s, endpoint, f);
+    return f;
+  }
+
+ private:
+  // A vertex of one edge and the point nearest to it on the other, as a candidate.
+  template <class T>
+  struct Candidate {
+    T a, b;           // parameters of the closest points
+    Vec3<T> between;  // from edge A to edge B
+    T squared;
+    T free;           // 1 if the point on the other edge is inside it
+  };
+
+  // Vertex at parameter a of A against B.
+  template <class T>
+  static DEFINITE_INLINE Candidate<T> AgainstB(const Edges<T>& e, const Vec3<T>& from,
+                                               const T& a, const T& inverse_bb) {
+    const T b = -(Dot(from, e.e1) * inverse_bb);
+    Candidate<T> c = Clamp(b, a);
+    c.between = from + c.b * e.e1;
+    c.squared = Dot(c.between, c.between);
+    return c;
+  }
+  // Vertex at parameter b of B against A.
+  template <class T>
+  static DEFINITE_INLINE Candidate<T> AgainstA(const Edges<T>& e, const Vec3<T>& from,
+                                               const T& b, const T& inverse_aa) {
+    const T a = Dot(from, e.e0) * inverse_aa;
+    Candidate<T> c = Clamp(a, b);
+    std::swap(c.a, c.b);
+    c.between = from - c.a * e.e0;
+    c.squared = Dot(c.between, c.between);
+    return c;
+  }
+  // The parameter clamped to [0, 1], in b, and the vertex's own in a.
+  template <class T>
+  static DEFINITE_INLINE Candidate<T> Clamp(const T& parameter, const T& own) {
+    Candidate<T> c;
+    c.a = own;
+    const auto below = parameter <= T(0.0), above = parameter >= T(1.0);
+    c.b = Select(below, T(0.0), Select(above, T(1.0), parameter));
+    c.free = Select(below | above, T(0.0), T(1.0));
+    return c;
+  }
+
+  // Replaces the frame, where `endpoint`, by that of the nearest vertex.
+  template <class T>
+  static DEFINITE_INLINE void SetEndpoint(const Edges<T>& edges, const T& s,
+                                          const MaskOf<T>& endpoint, CollisionFrame<T>& f) {
+    const auto& [e0, e1, e2] = edges;
+    T aa = Dot(e0, e0), bb = Dot(e1, e1);
+    const auto no_edge = (aa <= T(kLeastLength * kLeastLength)) |
+                         (bb <= T(kLeastLength * kLeastLength));
+    aa = Select(no_edge, T(1.0), aa);
+    bb = Select(no_edge, T(1.0), bb);
+    const T inverse_a = T(1.0) / Sqrt(aa), inverse_b = T(1.0) / Sqrt(bb);
+    const T inverse_aa = inverse_a * inverse_a, inverse_bb = inverse_b * inverse_b;
+    const Candidate<T> candidates[4] = {AgainstB(edges, e2, T(0.0), inverse_bb),
+                                        AgainstB(edges, e2 - e0, T(1.0), inverse_bb),
+                                        AgainstA(edges, e2, T(0.0), inverse_aa),
+                                        AgainstA(edges, e2 + e1, T(1.0), inverse_aa)};
+    Candidate<T> best = candidates[0];
+    T on_a = T(0.0);  // 1 if the free edge is A
+#pragma GCC unroll 3
+    for (int i = 1; i < 4; ++i) {
+      const Candidate<T>& c = candidates[i];
+      const auto nearer = c.squared < best.squared;
+      best.a = Select(nearer, c.a, best.a);
+      best.b = Select(nearer, c.b, best.b);
+      best.squared = Select(nearer, c.squared, best.squared);
+      best.free = Select(nearer, c.free, best.free);
+      on_a = Select(nearer, T(i < 2 ? 0.0 : 1.0), on_a);
+#pragma GCC unroll 3
+      for (int k = 0; k < 3; ++k) {
+        best.between[k] = Select(nearer, c.between[k], best.between[k]);
+      }
+    }
+    const auto touching = best.squared <= T(kLeastLength * kLeastLength);
+    f.outside = no_edge | touching;
+    const T squared = Select(f.outside, T(1.0), best.squared);
+    const T u = Sqrt(squared);
+    const Vec3<T> n = (s / u) * best.between;
+
+    const auto is_free = best.free > T(0.0), along_a = on_a > T(0.0);
+    // Along the free edge, else along the axis that is farthest from n; made normal to n.
+    Vec3<T> d;
+    const T least = Least(Abs(n[0]), Least(Abs(n[1]), Abs(n[2])));
+    T left = T(1.0);  // only one axis of several
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; ++k) {
+      const T axis = Select(Abs(n[k]) <= least, left, T(0.0));
+      left = left - axis;
+      d[k] = Select(is_free, Select(along_a, inverse_a * e0[k], inverse_b * e1[k]), axis);
+    }
+    d = d - Dot(d, n) * n;
+    const Vec3<T> t0 = (T(1.0) / Sqrt(Dot(d, d))) * d;
+    const Vec3<T> t1 = Cross(n, t0);
+    const Vec<T, 4> row = {Select(along_a, T(-1.0), T(0.0)), Select(along_a, T(1.0), T(0.0)),
+                           Select(along_a, T(0.0), T(-1.0)), Select(along_a, T(0.0), T(1.0))};
+    const Vec<T, 4> w = {best.a - T(1.0), -best.a, T(1.0) - best.b, best.b};
+
+    f.l = Select(endpoint, s * u, f.l);
+    f.n = Blend(endpoint, n, f.n);
+    f.w = Blend(endpoint, w, f.w);
+    f.t[0] = Blend(endpoint, t0, f.t[0]);
+    f.t[1] = Blend(endpoint, t1, f.t[1]);
+    f.region = Select(endpoint, Select(is_free, T(kVertexEdge), T(kVertexVertex)), T(kInterior));
+    if constexpr (kKind != Clamped::kHybrid) {
+      const auto touching_inside = Abs(f.l) <= T(kLeastLength);
+      f.outside = f.outside | touching_inside;
+      f.l = Select(touching_inside, T(1.0), f.l);
+    }
+    if constexpr (kKind != Clamped::kFrozen) {
+      f.rows[0] = Blend(endpoint, row, f.rows[0]);
+      f.inverse_length[0] =
+          Select(endpoint, Select(along_a, inverse_a, inverse_b), f.inverse_length[0]);
+      f.fixed[1] = endpoint;
+      if constexpr (kKind == Clamped::kHybrid) {
+        f.fixed[0] = endpoint;
+      } else {
+        f.fixed[0] = Select(endpoint, Select(is_free, T(0.0), T(1.0)), T(0.0)) > T(0.0);
+      }
+    }
+  }
+
+  template <class T>
+  static DEFINITE_INLINE T Least(const T& a, const T& b) {
+    return Select(a < b, a, b);
+  }
+  template <class T, int N>
+  static DEFINITE_INLINE Vec<T, N> Blend(const MaskOf<T>& mask, const Vec<T, N>& yes,
+                                         const Vec<T, N>& no) {
+    Vec<T, N> r;
+#pragma GCC unroll 4
+    for (int i = 0; i < N; ++i) r[i] = Select(mask, yes[i], no[i]);
+    return r;
+  }
+};
+
+}  // namespace definite
