@@ -12,12 +12,14 @@ import pathlib
 import pty
 import re
 import resource
+import select
 import signal
 import stat
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 
 import jsonschema
@@ -72,15 +74,19 @@ class OnTerminal:
         self.shown = ""
 
     def read_until(self, pattern):
+        deadline = time.monotonic() + TIMEOUT
         while not re.search(pattern, self.shown):
-            if not self.read():
-                raise AssertionError(f"ended without {pattern!r}: {self.shown!r}")
+            if not self.read() or time.monotonic() > deadline:
+                raise AssertionError(f"no {pattern!r} in {self.shown[-1000:]!r}")
 
     def read(self):
-        try:
-            part = os.read(self.master, 65536).decode()
-        except OSError:  # the other side is closed
-            part = ""
+        """Nothing at the end, or after a long silence."""
+        part = ""
+        if select.select([self.master], [], [], TIMEOUT)[0]:
+            try:
+                part = os.read(self.master, 65536).decode()
+            except OSError:  # the other side is closed
+                pass
         self.shown += part
         return part
 
