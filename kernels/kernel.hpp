@@ -89,13 +89,15 @@ concept EnergyOver = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams
   { E::Name() } -> std::convertible_to<std::string>;
   { E::Source() } -> std::convertible_to<std::string>;
   { E::Stencil::kName } -> std::convertible_to<std::string_view>;
-  { std::span<const Parameter>(E::kParameters) };
+  {std::span<const Parameter>(E::kParameters)};
   { E::Value(x, p) } -> std::same_as<T>;
   { E::Gradient(x, p) } -> std::same_as<Vec<T, E::kDofs>>;
   { E::Classify(x, p) } -> std::same_as<Classification<T>>;
   E::template HessianModes<Set::kExact, Part::kAll>(x, p);
   { E::template HessianModes<Set::kFrame, Part::kAll>(x, p).lambda[0] } -> std::same_as<T&&>;
-  { E::template HessianModes<Set::kFrame, Part::kAll>(x, p).v[0] } -> std::same_as<Vec<T, E::kDofs>&&>;
+  {
+    E::template HessianModes<Set::kFrame, Part::kAll>(x, p).v[0]
+    } -> std::same_as<Vec<T, E::kDofs>&&>;
   E::template HessianModes<Set::kFrame, Part::kPositive>(x, p);
   E::template HessianModes<Set::kFrame, Part::kCurvature>(x, p);
 };
@@ -110,13 +112,13 @@ inline constexpr bool kIsSymmetric<PackedSym<T, D>, T, D> = true;
 // A filter gives a symmetric matrix that stands in for the Hessian of any energy it fits: as modes,
 // if it can, else packed.
 template <class F, class E, class T>
-concept FilterOver =
-    EnergyOver<E, T> && requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-      { F::kName } -> std::convertible_to<std::string_view>;
-      { F::kSource } -> std::convertible_to<std::string_view>;
-      { std::span<const Exemption>(F::kExempt) };
-      requires kIsSymmetric<decltype(F::template Apply<E>(x, p)), T, E::kDofs>;
-    };
+concept FilterOver = EnergyOver<E, T> &&
+    requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+  { F::kName } -> std::convertible_to<std::string_view>;
+  { F::kSource } -> std::convertible_to<std::string_view>;
+  {std::span<const Exemption>(F::kExempt)};
+  requires kIsSymmetric<decltype(F::template Apply<E>(x, p)), T, E::kDofs>;
+};
 
 // One term map^T (sum of modes) map of a Hessian in a reduced frame of F coordinates.
 template <class T, int F, int D, int K>
@@ -184,7 +186,7 @@ using TileFunction = void (*)(const double* x, const double* p, double* out, lon
 
 // One for each energy; its functions are scalar (W = 1).
 struct EnergyRow {
-  std::string name;         // "collision/vertex_face/signed/quadratic"
+  std::string name;    // "collision/vertex_face/signed/quadratic"
   std::string source;  // paper and equations
   std::string_view stencil;
   int dofs;

@@ -218,7 +218,8 @@ class BadInput(unittest.TestCase):
                              f"--kernel '{name[:-1]}'", f"nearest are:\n  {name}\n")
 
     def test_an_unknown_subcommand_is_rejected_with_the_known_ones(self):
-        self.assert_rejected(["swep"], "'swep'", "expected a subcommand: sweep, replay, list, reproduce")
+        self.assert_rejected(["swep"], "'swep'",
+                             "expected a subcommand: sweep, replay, list, reproduce")
 
     def test_no_subcommand_is_rejected_with_the_known_ones(self):
         self.assert_rejected([], "expected a subcommand: sweep, replay, list, reproduce")
@@ -650,7 +651,7 @@ class Replays(unittest.TestCase):
                 self.assertIn(f"\n{row['kernel']}, in units of 1e", done.stdout)
 
     def test_the_entries_of_a_matrix_stand_apart(self):
-        text = run("replay", "--kernel", self.NAME, "--index", "1234", "--seed", "3").stdout
+        text = run("replay", "--kernel", self.NAME, "--index", "44").stdout
         matrix = text.split(f"\n{self.NAME}, in units of ")[1].split("\n")[1:13]
         self.assertEqual([len(line.split()) for line in matrix], list(range(12, 0, -1)))
 

@@ -148,8 +148,8 @@ double Relabelled(const Subject& s, const Configuration& c, const std::vector<do
     // The frame starts at another edge now, whose angle may be far worse.
     const double conditioning = std::min(c.conditioning, ConditioningOf(energy, x, c.p));
     if (conditioning < 1e-7) continue;
-    worst = std::max(worst,
-                     AgainstRounding(Outputs(*s.row, x, c.p), expected, h, n, conditioning) / 2);
+    worst =
+        std::max(worst, AgainstRounding(Outputs(*s.row, x, c.p), expected, h, n, conditioning) / 2);
   }
   return worst;
 }
@@ -225,7 +225,8 @@ std::vector<Configuration> DegenerateVertexFaces() {
       VertexFaceCase("height 1e-4", ex, {0.5, 1e-4, 0}, 0.3, 0.3, 0.05, 0.1, 0),
       VertexFaceCase("height 1e-7", ex, {0.5, 1e-7, 0}, 0.3, 0.3, 0.05, 0.1, 0),
       VertexFaceCase("height 1e8", ex, {0.5, 1e8, 0}, 0.3, 0.3, 0.05, 0.1, 0),
-      VertexFaceCase("deep under a tiny triangle", {1e-6, 0, 0}, {0, 1e-6, 0}, 0.3, 0.3, -1, 0.1, 0),
+      VertexFaceCase("deep under a tiny triangle", {1e-6, 0, 0}, {0, 1e-6, 0}, 0.3, 0.3, -1, 0.1,
+                     0),
       VertexFaceCase("foot point far outside", ex, ey, 100, -50, 0.05, 0.1, 0),
       VertexFaceCase("far from the origin", ex, ey, 0.25, 0.5, 0.0625, 0.125, 0x1p20),
       VertexFaceCase("side flipped", e0, e1, 0.3, 0.4, -0.05, 0.1, 0),
@@ -237,7 +238,7 @@ std::vector<Configuration> DegenerateVertexFaces() {
 }  // namespace
 
 std::vector<double> Outputs(const KernelRow& row, const std::vector<double>& x,
-                        const std::vector<double>& p) {
+                            const std::vector<double>& p) {
   std::vector<double> out(static_cast<std::size_t>(row.outputs));
   RunOne(row, x.data(), p.data(), out.data());
   return out;

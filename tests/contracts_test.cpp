@@ -16,8 +16,8 @@
 namespace definite::testing {
 namespace {
 
-// An energy of the tests' own, behind every filter: some of its Hessians are PSD, which those of the
-// signed collision energies never are.
+// An energy of the tests' own, behind every filter: some of its Hessians are PSD, which those of
+// the signed collision energies never are.
 const std::vector<EnergyTable>& TestTables() {
   static const std::vector<EnergyTable> tables = [] {
     std::vector<EnergyTable> t = {MakeTable<TriangleArap>(AllFilters())};
@@ -87,10 +87,10 @@ TEST_P(Contract, IsKept) {
 }
 
 std::string TestName(const ::testing::TestParamInfo<Promise>& info) {
-  std::string name = info.param.subject.row->name + "_" +
-                     std::string(PropertyName(info.param.property));
-  std::ranges::replace_if(name, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); },
-                          '_');
+  std::string name =
+      info.param.subject.row->name + "_" + std::string(PropertyName(info.param.property));
+  std::ranges::replace_if(
+      name, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
   return name;
 }
 
@@ -134,7 +134,9 @@ TEST_F(Exhibits, OtherRoundingOnLanesIsNotEqual) {
   ExpectRejected(Property::kLanesEqualScalar, 3, true);
 }
 TEST_F(Exhibits, TenPercentLessDoesNotMajorise) { ExpectRejected(Property::kMajorises, 4); }
-TEST_F(Exhibits, APreferredAxisDoesNotTurnWithThePair) { ExpectRejected(Property::kRigidMotion, 5); }
+TEST_F(Exhibits, APreferredAxisDoesNotTurnWithThePair) {
+  ExpectRejected(Property::kRigidMotion, 5);
+}
 TEST_F(Exhibits, AVertexTiedDownFeelsTranslation) { ExpectRejected(Property::kTranslation, 6); }
 TEST_F(Exhibits, AnAbsoluteThresholdFeelsTheUnit) { ExpectRejected(Property::kScale, 7); }
 

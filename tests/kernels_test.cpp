@@ -68,7 +68,8 @@ void ExpectDefined(const std::string& distribution) {
   const auto* definition = reference::FindFilter<Quad>(F::kName);
   int checked = 0;
   ForDrawn<SignedVertexFace>(distribution, 40, [&](const auto& x, const auto& p, auto& truth) {
-    EXPECT_LT(RelativeError(ToPacked(F::template Apply<SignedVertexFace>(x, p)), definition->define(truth)),
+    EXPECT_LT(RelativeError(ToPacked(F::template Apply<SignedVertexFace>(x, p)),
+                            definition->define(truth)),
               1e-28)
         << F::kName;
     ++checked;
@@ -100,8 +101,8 @@ TEST(SignedVertexFace, HasTheReferencesValueAndGradientInFloat128) {
 TEST(SignedVertexFace, HasANormalOppositeToTheCounterClockwiseOne) {
   const std::vector<double> x = Above(0.5), p = {1, 1, 0};
   double value;
-  FindKernel(std::string(kSignedVertexFace) + "/none/f64")->energy->value(x.data(), p.data(),
-                                                                         &value, 1);
+  FindKernel(std::string(kSignedVertexFace) + "/none/f64")
+      ->energy->value(x.data(), p.data(), &value, 1);
   EXPECT_DOUBLE_EQ(value, 1.5 * 1.5);  // l = -0.5
 }
 
@@ -127,11 +128,11 @@ TEST(SignedVertexFace, IsZeroWhereInactive) {
 TEST(SignedVertexFace, IsZeroAndCountedOutsideTheDomain) {
   const EnergyRow* energy = FindKernel(std::string(kSignedVertexFace) + "/none/f64")->energy;
   const std::vector<std::vector<double>> outside = {
-      {0.2, 0.1, 0.3, 0, 0, 0, 1, 0, 0, 2, 0, 0},        // collinear
-      {0.2, 0.1, 0.3, 0, 0, 0, 1, 0, 0, 2, 1e-9, 0},     // nearly
-      {0.2, 0.1, 0.3, 1, 0, 0, 1, 0, 0, 0, 1, 0},        // an edge of length zero
-      {0.2, 0.1, 0.3, 1, 0, 0, 1, 1e-200, 0, 0, 1, 0},   // an edge too short
-      {1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3},              // one point
+      {0.2, 0.1, 0.3, 0, 0, 0, 1, 0, 0, 2, 0, 0},       // collinear
+      {0.2, 0.1, 0.3, 0, 0, 0, 1, 0, 0, 2, 1e-9, 0},    // nearly
+      {0.2, 0.1, 0.3, 1, 0, 0, 1, 0, 0, 0, 1, 0},       // an edge of length zero
+      {0.2, 0.1, 0.3, 1, 0, 0, 1, 1e-200, 0, 0, 1, 0},  // an edge too short
+      {1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3},             // one point
   };
   const std::vector<double> p = {1, 10, 0};
   for (const std::vector<double>& x : outside) {
@@ -239,8 +240,8 @@ TEST(Interface, HoldsATriangleWithACoupledScalingBlock) {
 
 TEST(Scaling, ByAPowerOfTwoBringsANumberBetweenTwoAndFour) {
   for (double m : {0x1p-1022, 1e-300, 0.3, 1.0, 1.9999, 2.0, 1e300, 0x1.fffffp1023}) {
-    for (double scaled : {m * InversePowerOfTwo(m),
-                          static_cast<double>(Quad(m) * InversePowerOfTwo(Quad(m)))}) {
+    for (double scaled :
+         {m * InversePowerOfTwo(m), static_cast<double>(Quad(m) * InversePowerOfTwo(Quad(m)))}) {
       EXPECT_GE(scaled, 2);
       EXPECT_LT(scaled, 4);
     }

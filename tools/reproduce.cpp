@@ -73,8 +73,8 @@ int RunReproduce(const Options& options) {
 void AddReproduce(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
   const auto paper = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("reproduce", "Measures a paper's tables again, with a verdict on its claims");
+  CLI::App* command = app.add_subcommand(
+      "reproduce", "Measures a paper's tables again, with a verdict on its claims");
   command->add_option("paper", *paper, fmt::format("Which one: {}", ShiKim2023::kName))
       ->required()
       ->check(CLI::IsMember({ShiKim2023::kName}))

@@ -13,7 +13,9 @@ namespace definite {
 inline constexpr int kTile = 8;  // configurations in the widest tile; batches are multiples of it
 
 // Rounds up to whole tiles.
-constexpr std::int64_t WholeTiles(std::int64_t count) { return (count + kTile - 1) / kTile * kTile; }
+constexpr std::int64_t WholeTiles(std::int64_t count) {
+  return (count + kTile - 1) / kTile * kTile;
+}
 
 // Doubles that start at a cache line, as lanes like them.
 class AlignedDoubles {

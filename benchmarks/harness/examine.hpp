@@ -64,8 +64,8 @@ class Examiner {
   // double; throws std::runtime_error otherwise. Rows may be any of the energy's, in any order.
   Examiner(const EnergyRow& energy, std::span<const KernelRow* const> rows);
 
-  // Judges configuration (x, p). outputs[r] is what row r made of it, outputs `h` and `nearest` what
-  // none/f64 and numeric/f64 did.
+  // Judges configuration (x, p). outputs[r] is what row r made of it, outputs `h` and `nearest`
+  // what none/f64 and numeric/f64 did.
   void Examine(const double* x, const double* p, Packed h, Packed nearest,
                std::span<const Packed> outputs, Depth depth);
 

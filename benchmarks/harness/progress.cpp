@@ -59,7 +59,7 @@ void Progress::Advance(std::uint64_t units) {
 }
 
 void Progress::Draw() {
-  constexpr int kWidth = 30;
+  constexpr int kWidth = 24;  // the line fits 80 columns
   const double elapsed =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double part = total_ ? static_cast<double>(done_) / static_cast<double>(total_) : 1;

@@ -105,7 +105,10 @@ std::string ShowInterval(const std::optional<Interval>& r) {
 
 Json Claim(const std::string& claim, const std::string& theirs, const std::string& ours,
            const std::string& verdict, const std::string& reason) {
-  return {{"claim", claim}, {"theirs", theirs}, {"ours", ours}, {"verdict", verdict},
+  return {{"claim", claim},
+          {"theirs", theirs},
+          {"ours", ours},
+          {"verdict", verdict},
           {"reason", reason}};
 }
 
@@ -124,27 +127,27 @@ Json SpeedClaim(const Json& result, const PublishedRow& published) {
     verdict = "qualified";
     reason = "less through the frame's products, more as three outer products in x-space";
   }
-  return Claim(fmt::format("{}: analytic is {:.2f} times faster than numeric", published.label,
-                           theirs),
-               fmt::format("{:.2f}", theirs), ShowInterval(paper_form), verdict, reason);
+  return Claim(
+      fmt::format("{}: analytic is {:.2f} times faster than numeric", published.label, theirs),
+      fmt::format("{:.2f}", theirs), ShowInterval(paper_form), verdict, reason);
 }
 
 Json OverheadClaim(const Json& result, const PublishedRow& published) {
   const double theirs = published.analytic / published.gauss_newton;
-  const auto frame = Inverse(
-      RatioTo(RowOf(result, published.energy, "analytic_frame/f64"), "gauss_newton_frame"));
+  const auto frame =
+      Inverse(RatioTo(RowOf(result, published.energy, "analytic_frame/f64"), "gauss_newton_frame"));
   const auto outer =
       Inverse(RatioTo(RowOf(result, published.energy, "analytic_frame/f64"), "gauss_newton"));
-  const std::string claim =
-      fmt::format("{}: analytic costs {:.0f} % more than Gauss-Newton", published.label,
-                  100 * (theirs - 1));
+  const std::string claim = fmt::format("{}: analytic costs {:.0f} % more than Gauss-Newton",
+                                        published.label, 100 * (theirs - 1));
   if (!frame || !outer) {
     return Claim(claim, fmt::format("{:.2f}", theirs), "not timed", "not reproduced",
                  "not timed in this run");
   }
   const bool holds = frame->low <= theirs;
   return Claim(
-      claim, fmt::format("{:.2f}", theirs), ShowInterval(frame), holds ? "qualified" : "not reproduced",
+      claim, fmt::format("{:.2f}", theirs), ShowInterval(frame),
+      holds ? "qualified" : "not reproduced",
       fmt::format("{} if Gauss-Newton goes through the same 12x9 and 9x9 products; against the "
                   "single outer product that it is, {:.1f} times its cost",
                   holds ? "holds" : "more even", outer->median));
@@ -222,15 +225,15 @@ std::string ShiKim2023::Markdown(const Json& result) {
     return ns ? fmt::format("{:.2f}", ns->median * 1e-9 * 1e7) : "-";
   };
   std::string text = "### Table 1: seconds for 10^7 Hessians\n\n";
-  std::vector<std::vector<std::string>> table = {{"", "numeric", "analytic", "G-N", "ratio",
-                                                  "numeric", "analytic", "G-N", "ratio"}};
+  std::vector<std::vector<std::string>> table = {
+      {"", "numeric", "analytic", "G-N", "ratio", "numeric", "analytic", "G-N", "ratio"}};
   for (const PublishedRow& p : kTable1) {
-    table.push_back({p.label, fmt::format("{:.2f}", p.numeric), fmt::format("{:.2f}", p.analytic),
-                     fmt::format("{:.2f}", p.gauss_newton),
-                     fmt::format("{:.2f}", p.numeric / p.analytic), seconds(p, "numeric/f64"),
-                     seconds(p, "analytic_frame/f64"), seconds(p, "gauss_newton_frame/f64"),
-                     Show(RatioTo(RowOf(result, p.energy, "analytic_frame/f64"), "numeric"),
-                          "{:.2f}")});
+    table.push_back(
+        {p.label, fmt::format("{:.2f}", p.numeric), fmt::format("{:.2f}", p.analytic),
+         fmt::format("{:.2f}", p.gauss_newton), fmt::format("{:.2f}", p.numeric / p.analytic),
+         seconds(p, "numeric/f64"), seconds(p, "analytic_frame/f64"),
+         seconds(p, "gauss_newton_frame/f64"),
+         Show(RatioTo(RowOf(result, p.energy, "analytic_frame/f64"), "numeric"), "{:.2f}")});
   }
   text += MarkdownTable(table);
   const std::string clock =
@@ -239,13 +242,15 @@ std::string ShiKim2023::Markdown(const Json& result) {
           : fmt::format("{} of {} thread(s)",
                         first.at("timing")[0].at("clock") == "wall" ? "wall time" : "CPU time",
                         first.at("timing")[0].at("threads").get<int>());
-  text += "\n" + Wrapped(fmt::format(
-                             "Theirs on the left, ours on the right, analytic and Gauss-Newton (G-N) "
-                             "through the 12x9 and 9x9 products of the reduced frame; {}, measured over {} configurations "
-                             "of `{}`, seed {}.",
-                             clock, WithCommas(count), kDistribution,
-                             result.at("seed").get<std::uint64_t>()),
-                         98, "");
+  text +=
+      "\n" +
+      Wrapped(fmt::format("Theirs on the left, ours on the right, analytic and Gauss-Newton (G-N) "
+                          "through the 12x9 and 9x9 products of the reduced frame; {}, measured "
+                          "over {} configurations "
+                          "of `{}`, seed {}.",
+                          clock, WithCommas(count), kDistribution,
+                          result.at("seed").get<std::uint64_t>()),
+              98, "");
 
   text += "\n### What it depends on: the same filters in other forms\n\n";
   table = {{"numeric / analytic", "paper", "frame", "stable", "8 lanes", "active %"}};
@@ -253,11 +258,12 @@ std::string ShiKim2023::Markdown(const Json& result) {
     const auto ratio = [&](const std::string& filter) {
       return Show(RatioTo(RowOf(result, p.energy, filter), "numeric"), "{:.1f}");
     };
-    table.push_back({p.label, fmt::format("{:.1f}", p.numeric / p.analytic),
-                     ratio("analytic_frame/f64"), ratio("analytic/f64"), ratio("analytic/f64x8"),
-                     fmt::format("{:.4g}", 100 * RowOf(result, p.energy, "analytic/f64")
-                                                     .at("active_fraction")
-                                                     .get<double>())});
+    table.push_back(
+        {p.label, fmt::format("{:.1f}", p.numeric / p.analytic), ratio("analytic_frame/f64"),
+         ratio("analytic/f64"), ratio("analytic/f64x8"),
+         fmt::format(
+             "{:.4g}",
+             100 * RowOf(result, p.energy, "analytic/f64").at("active_fraction").get<double>())});
   }
   text += MarkdownTable(table) + "\n";
   table = {{"analytic / Gauss-Newton", "paper", "frame / frame", "frame / outer", "stable / outer",
@@ -300,40 +306,38 @@ std::string ShiKim2023::Markdown(const Json& result) {
     }
     text += MarkdownTable(table);
   }
-  text += "\n" + Wrapped("Distance is to the nearest PSD matrix of the row's own Hessian, excess "
-                         "how much more the filter changes it than it must (median), PSD defect "
-                         "the worst -lambda_min/(n u |F|) (50 is the bound), relabel. how much the "
-                         "result depends on the numbering of the vertices (median).",
-                         98, "");
+  text += "\n" + Wrapped(
+                     "Distance is to the nearest PSD matrix of the row's own Hessian, excess "
+                     "how much more the filter changes it than it must (median), PSD defect "
+                     "the worst -lambda_min/(n u |F|) (50 is the bound), relabel. how much the "
+                     "result depends on the numbering of the vertices (median).",
+                     98, "");
 
   text += "\n### Claims\n\n";
   for (const Json& claim : result.at("claims")) {
-    text += Wrapped(fmt::format("- **{}**: {}. Paper: {}; here: {}; {}.",
-                                claim.at("verdict").get<std::string>(),
-                                claim.at("claim").get<std::string>(),
-                                claim.at("theirs").get<std::string>(),
-                                claim.at("ours").get<std::string>(),
-                                claim.at("reason").get<std::string>()),
-                    98, "  ");
+    text += Wrapped(
+        fmt::format("- **{}**: {}. Paper: {}; here: {}; {}.",
+                    claim.at("verdict").get<std::string>(), claim.at("claim").get<std::string>(),
+                    claim.at("theirs").get<std::string>(), claim.at("ours").get<std::string>(),
+                    claim.at("reason").get<std::string>()),
+        98, "  ");
   }
   const Json& machine = result.at("machine");
   const Json& build = result.at("build");
-  text += "\n" + Wrapped(fmt::format("Machine: {}, {} cores, load {:.2f}{}. Build: {}, {}, {}, "
-                                     "Eigen {}, commit {}.",
-                                     machine.at("cpu").is_null()
-                                         ? "unknown"
-                                         : machine.at("cpu").get<std::string>(),
-                                     machine.at("cores").get<int>(),
-                                     machine.at("load_average").is_null()
-                                         ? 0.0
-                                         : machine.at("load_average").get<double>(),
-                                     machine.at("noisy").get<bool>() ? " (noisy)" : "",
-                                     build.at("compiler").get<std::string>(),
-                                     build.at("flags").get<std::string>(),
-                                     build.at("isa").get<std::string>(),
-                                     build.at("eigen").get<std::string>(),
-                                     build.at("commit").get<std::string>()),
-                         98, "");
+  text +=
+      "\n" +
+      Wrapped(
+          fmt::format(
+              "Machine: {}, {} cores, load {:.2f}{}. Build: {}, {}, {}, "
+              "Eigen {}, commit {}.",
+              machine.at("cpu").is_null() ? "unknown" : machine.at("cpu").get<std::string>(),
+              machine.at("cores").get<int>(),
+              machine.at("load_average").is_null() ? 0.0 : machine.at("load_average").get<double>(),
+              machine.at("noisy").get<bool>() ? " (noisy)" : "",
+              build.at("compiler").get<std::string>(), build.at("flags").get<std::string>(),
+              build.at("isa").get<std::string>(), build.at("eigen").get<std::string>(),
+              build.at("commit").get<std::string>()),
+          98, "");
   return text;
 }
 

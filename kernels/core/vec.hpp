@@ -57,7 +57,8 @@ DEFINITE_INLINE T Dot(const Vec<T, N>& a, const Vec<T, N>& b) {
 
 template <class T>
 DEFINITE_INLINE Vec3<T> Cross(const Vec3<T>& a, const Vec3<T>& b) {
-  // Products are rounded alike on both sides of each difference, so parallel vectors give exactly 0.
+  // Products are rounded alike on both sides of each difference, so parallel vectors give exactly
+  // 0.
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 

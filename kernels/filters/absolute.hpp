@@ -10,9 +10,11 @@ namespace definite {
 
 struct Absolute {
   static constexpr std::string_view kName = "absolute";
-  static constexpr std::string_view kSource = "Chen et al. 2024; modes of Shi & Kim 2023, Eqs. 11-13";
+  static constexpr std::string_view kSource =
+      "Chen et al. 2024; modes of Shi & Kim 2023, Eqs. 11-13";
   static constexpr Exemption kExempt[] = {
-      {Property::kRelabelling, "the paper's frame starts at e0, and the frame map is not orthogonal"},
+      {Property::kRelabelling,
+       "the paper's frame starts at e0, and the frame map is not orthogonal"},
   };
 
   template <class E, class T>

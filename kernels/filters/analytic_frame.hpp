@@ -12,11 +12,12 @@ struct AnalyticFrame {
   static constexpr std::string_view kName = "analytic_frame";
   static constexpr std::string_view kSource = "Shi & Kim 2023, Eqs. 11-13, 17-19; Eigen products";
   static constexpr Exemption kExempt[] = {
-      {Property::kRelabelling, "the paper's frame starts at e0, and the frame map is not orthogonal"},
+      {Property::kRelabelling,
+       "the paper's frame starts at e0, and the frame map is not orthogonal"},
   };
 
   template <class E, class T>
-    requires WithFrame<E, T> && std::same_as<T, double>
+  requires WithFrame<E, T> && std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     return FilterInFrame<E>(x, p, [](const auto& modes) { return SumInEigen(modes, ClampToPsd); });
   }

@@ -17,11 +17,12 @@ struct AnalyticPrinted {
       {Property::kMajorises, "an inaccurate clamp majorises only roughly"},
       {Property::kRigidMotion, "the digits it loses change with the way the pair lies"},
       {Property::kScale, "over- and underflows without a common unit of length"},
-      {Property::kRelabelling, "the paper's frame starts at e0, and the frame map is not orthogonal"},
+      {Property::kRelabelling,
+       "the paper's frame starts at e0, and the frame map is not orthogonal"},
   };
 
   template <class E, class T>
-    requires OffersSet<E, T, Set::kPrinted>
+  requires OffersSet<E, T, Set::kPrinted>
   static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     return MapModes(E::template HessianModes<Set::kPrinted, Part::kAll>(x, p),
                     [](const T& lambda) { return Select(lambda < T(0.0), T(0.0), lambda); });

@@ -8,10 +8,11 @@
 
 namespace definite::reference {
 
-// Bending of a strand of three vertices: psi = mu/2 (omega - omega0)^2, omega the angle by which the
-// strand turns at the middle one, x1 (Shi et al. 2023, Lifted Curls, supplement, section 1; their
-// theta is pi - omega). p = (mu, omega0), omega0 in radians. Domain: the edges have a length, and
-// the sine of omega exceeds 1e-8. The frame: both edges in units of their lengths, which are frozen.
+// Bending of a strand of three vertices: psi = mu/2 (omega - omega0)^2, omega the angle by which
+// the strand turns at the middle one, x1 (Shi et al. 2023, Lifted Curls, supplement, section 1;
+// their theta is pi - omega). p = (mu, omega0), omega0 in radians. Domain: the edges have a length,
+// and the sine of omega exceeds 1e-8. The frame: both edges in units of their lengths, which are
+// frozen.
 struct StrandBend {
   static std::string Name() { return "strand/bend/quadratic"; }
   static constexpr int kDofs = 9;
