@@ -36,12 +36,12 @@ const std::string kEnvelope = "collision/edge_edge/unsigned/quadratic";
 const std::vector<std::pair<std::string, std::string>> kFilters = {
     {"numeric/f64", "numeric 12x12"},
     {"numeric_frame/f64", "numeric 9x9 in the frame"},
-    {"analytic_frame/f64", "analytic, as the paper writes it"},
+    {"analytic_frame/f64", "analytic, through the frame"},
     {"analytic/f64", "analytic, stable"},
     {"analytic/f64x8", "analytic, stable, 8 lanes"},
-    {"gauss_newton_frame/f64", "Gauss-Newton through the frame"},
-    {"gauss_newton/f64", "Gauss-Newton, outer product"},
-    {"gauss_newton/f64x8", "Gauss-Newton, 8 lanes"},
+    {"gauss_newton_frame/f64", "G-N through the frame"},
+    {"gauss_newton/f64", "G-N, outer product"},
+    {"gauss_newton/f64x8", "G-N, 8 lanes"},
 };
 
 const Json& RowOf(const Json& result, const std::string& energy, const std::string& filter) {
@@ -266,8 +266,8 @@ std::string ShiKim2023::Markdown(const Json& result) {
              100 * RowOf(result, p.energy, "analytic/f64").at("active_fraction").get<double>())});
   }
   text += MarkdownTable(table) + "\n";
-  table = {{"analytic / Gauss-Newton", "paper", "frame / frame", "frame / outer", "stable / outer",
-            "+ ns: frame", "stable"}};
+  table = {{"analytic / G-N", "paper", "frame / frame", "frame / outer", "stable / outer",
+            "+ns frame", "stable"}};
   for (const PublishedRow& p : kTable1) {
     const auto over = [&](const std::string& filter, const std::string& baseline) {
       return Show(Inverse(RatioTo(RowOf(result, p.energy, filter), baseline)), "{:.2f}");
@@ -293,7 +293,7 @@ std::string ShiKim2023::Markdown(const Json& result) {
   energies.emplace_back("edge-edge unsigned, exact Hessian", kEnvelope);
   for (const auto& [label, energy] : energies) {
     text += "\n" + label + "\n\n";
-    table = {{"filter", "ns", "dist. median", "p99", "max", "excess", "PSD defect", "relabel."}};
+    table = {{"filter", "ns", "median", "p99", "max", "excess", "defect", "relabel."}};
     for (const auto& [filter, name] : kFilters) {
       const Json& row = RowOf(result, energy, filter);
       table.push_back({name, Show(NsOf(row), "{:.1f}"),
@@ -307,8 +307,9 @@ std::string ShiKim2023::Markdown(const Json& result) {
     text += MarkdownTable(table);
   }
   text += "\n" + Wrapped(
-                     "Distance is to the nearest PSD matrix of the row's own Hessian, excess "
-                     "how much more the filter changes it than it must (median), PSD defect "
+                     "Median, p99, max: distance to the nearest PSD matrix of the row's "
+                     "own Hessian, excess is how much more the filter changes it than it must "
+                     "(median), defect "
                      "the worst -lambda_min/(n u |F|) (50 is the bound), relabel. how much the "
                      "result depends on the numbering of the vertices (median).",
                      98, "");
