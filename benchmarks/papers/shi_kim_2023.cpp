@@ -35,11 +35,11 @@ const std::string kEnvelope = "collision/edge_edge/unsigned/quadratic";
 // The filters of the tables: row name after the energy, and how it reads.
 const std::vector<std::pair<std::string, std::string>> kFilters = {
     {"numeric/f64", "numeric 12x12"},
-    {"numeric_frame/f64", "numeric 9x9 in the frame"},
+    {"numeric_frame/f64", "numeric 9x9"},
     {"analytic_frame/f64", "analytic, through the frame"},
     {"analytic/f64", "analytic, stable"},
-    {"analytic/f64x8", "analytic, stable, 8 lanes"},
-    {"gauss_newton_frame/f64", "G-N through the frame"},
+    {"analytic/f64x8", "analytic, 8 lanes"},
+    {"gauss_newton_frame/f64", "G-N, through the frame"},
     {"gauss_newton/f64", "G-N, outer product"},
     {"gauss_newton/f64x8", "G-N, 8 lanes"},
 };
@@ -267,7 +267,7 @@ std::string ShiKim2023::Markdown(const Json& result) {
   }
   text += MarkdownTable(table) + "\n";
   table = {{"analytic / G-N", "paper", "frame / frame", "frame / outer", "stable / outer",
-            "+ns frame", "stable"}};
+            "+ns", "stable"}};
   for (const PublishedRow& p : kTable1) {
     const auto over = [&](const std::string& filter, const std::string& baseline) {
       return Show(Inverse(RatioTo(RowOf(result, p.energy, filter), baseline)), "{:.2f}");
