@@ -266,8 +266,8 @@ std::string ShiKim2023::Markdown(const Json& result) {
              100 * RowOf(result, p.energy, "analytic/f64").at("active_fraction").get<double>())});
   }
   text += MarkdownTable(table) + "\n";
-  table = {{"analytic / G-N", "paper", "frame / frame", "frame / outer", "stable / outer",
-            "+ns", "stable"}};
+  table = {{"analytic / G-N", "paper", "frame/frame", "frame/outer", "stable/outer",
+            "+ns frame", "+ns stable"}};
   for (const PublishedRow& p : kTable1) {
     const auto over = [&](const std::string& filter, const std::string& baseline) {
       return Show(Inverse(RatioTo(RowOf(result, p.energy, filter), baseline)), "{:.2f}");
