@@ -6,7 +6,7 @@
 #include "benchmarks/harness/figures.hpp"
 #include "example/kernels.hpp"
 #include "example/reference.hpp"
-#include "kernels/energies/collision.hpp"
+#include "kernels/energies/collision_signed.hpp"
 #include "reference/oracle.hpp"
 
 namespace definite {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "kernels/energies/collision.hpp"
+#include "kernels/energies/collision_signed.hpp"
 #include "kernels/filters/analytic.hpp"
 
 namespace definite::testing {

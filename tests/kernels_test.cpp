@@ -10,7 +10,7 @@
 #include "benchmarks/hand_fused.hpp"
 #include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/figures.hpp"
-#include "kernels/energies/collision.hpp"
+#include "kernels/energies/collision_signed.hpp"
 #include "kernels/energies/strand_bend.hpp"
 #include "reference/oracle.hpp"
 #include "tests/test_energies.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-// psi(l) for a length l between two primitives: every combination of lengths/ and penalties/ that
-// makes sense.
+// psi(l) for a length l between two primitives, of lengths/ and penalties/. The combinations that
+// make sense are listed in the collision_*.hpp beside this file.
 //
 // Source: Shi & Kim 2023: frames and modes in lengths/, psi in penalties/.
 // Parameters: k (stiffness), eps (activation distance, a length), side (see each length).
@@ -11,13 +11,8 @@
 #include <string>
 #include <tuple>
 
-#include "kernels/lengths/closest_edges.hpp"
-#include "kernels/lengths/signed.hpp"
-#include "kernels/lengths/unsigned_plane.hpp"
-#include "kernels/penalties/quadratic.hpp"
+#include "kernels/lengths/collision_frame.hpp"
 #include "kernels/registry.hpp"
-#include "kernels/stencils/edge_edge.hpp"
-#include "kernels/stencils/vertex_face.hpp"
 
 namespace definite {
 
@@ -138,12 +133,5 @@ struct Collision {
     return slopes;
   }
 };
-
-DEFINITE_ENERGY(Collision<Signed<VertexFace>, Quadratic>);
-DEFINITE_ENERGY(Collision<UnsignedPlane<VertexFace>, Quadratic>);
-DEFINITE_ENERGY(Collision<Signed<EdgeEdge>, Quadratic>);
-DEFINITE_ENERGY(Collision<ClosestEdges<Clamped::kEnvelope>, Quadratic>);
-DEFINITE_ENERGY(Collision<ClosestEdges<Clamped::kFrozen>, Quadratic>);
-DEFINITE_ENERGY(Collision<ClosestEdges<Clamped::kHybrid>, Quadratic>);
 
 }  // namespace definite

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "kernels/core/eigen_clamp.hpp"
+#include "kernels/core/eigen.hpp"
 #include "kernels/filters/none.hpp"
 #include "kernels/registry.hpp"
 
@@ -22,8 +22,8 @@ struct AbsoluteNumeric {
   template <class E, class T>
     requires std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    const EigenMatrix<E::kDofs> h = ToEigen(ToPacked(None::Apply<E>(x, p)));
-    return FromEigen(MapEigenvalues(h, [](double lambda) { return std::abs(lambda); }));
+    return MapEigenvalues(ToPacked(None::Apply<E>(x, p)),
+                          [](double lambda) { return std::abs(lambda); });
   }
 };
 

@@ -3,7 +3,7 @@
 // The analytic filter assembled as the paper writes it: 12x9 * 9x9 * 9x12 products in Eigen. Scalar
 // only.
 
-#include "kernels/core/eigen_clamp.hpp"
+#include "kernels/core/eigen.hpp"
 #include "kernels/registry.hpp"
 
 namespace definite {
@@ -19,7 +19,8 @@ struct AnalyticFrame {
   template <class E, class T>
   requires WithFrame<E, T> && std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    return FilterInFrame<E>(x, p, [](const auto& modes) { return SumInEigen(modes, ClampToPsd); });
+    return FilterInFrame<E>(x, p,
+                            [](const auto& modes) { return MapModes(modes, ClampToPsd); });
   }
 };
 

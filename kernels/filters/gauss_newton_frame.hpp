@@ -3,7 +3,7 @@
 // The curvature term through the reduced frame, 12x9 * 9x9 * 9x12 in Eigen: what the paper most
 // likely timed as Gauss-Newton. Scalar only.
 
-#include "kernels/core/eigen_clamp.hpp"
+#include "kernels/core/eigen.hpp"
 #include "kernels/registry.hpp"
 
 namespace definite {
@@ -22,9 +22,7 @@ struct GaussNewtonFrame {
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     // The curvature is the first mode of the first term.
     const auto term = std::get<0>(E::FrameTerms(x, p));
-    int m = 0;
-    const auto curvature = SumInEigen(term.modes, [&](double l) { return m++ == 0 ? l : 0.0; });
-    return FromEigen(PullBackInEigen(term, curvature));
+    return PullBackInEigen(term.modes.lambda, term.modes.v, 1, term.map, nullptr);
   }
 };
 

@@ -2,7 +2,7 @@
 
 // Eigendecomposition of the full matrix, clamp, rebuild: the paper's baseline. Scalar only.
 
-#include "kernels/core/eigen_clamp.hpp"
+#include "kernels/core/eigen.hpp"
 #include "kernels/filters/none.hpp"
 #include "kernels/registry.hpp"
 
@@ -19,8 +19,7 @@ struct Numeric {
   template <class E, class T>
     requires std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    const EigenMatrix<E::kDofs> h = ToEigen(ToPacked(None::Apply<E>(x, p)));
-    return FromEigen(MapEigenvalues(h, ClampToPsd));
+    return MapEigenvalues(ToPacked(None::Apply<E>(x, p)), ClampToPsd);
   }
 };
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "kernels/core/eigen_clamp.hpp"
+#include "kernels/core/eigen.hpp"
 #include "kernels/registry.hpp"
 
 namespace definite {
@@ -23,9 +23,7 @@ struct NumericFrame {
   template <class E, class T>
   requires WithFrame<E, T> && std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    return FilterInFrame<E>(x, p, [](const auto& modes) {
-      return MapEigenvalues(SumInEigen(modes, std::identity()), ClampToPsd);
-    });
+    return FilterInFrame<E>(x, p, std::identity(), ClampToPsd);
   }
 };
 

@@ -1,0 +1,45 @@
+#pragma once
+
+// What the numeric and frame filters ask of Eigen. The library itself stays in eigen.cpp: its
+// templates took 20 of the 25 s that one energy's rows took to build.
+
+#include <tuple>
+
+#include "kernels/kernel.hpp"
+
+namespace definite {
+
+// What becomes of an eigenvalue. A NaN stays one.
+using EigenvalueMap = double (*)(double lambda);
+inline double ClampToPsd(double lambda) { return lambda < 0 ? 0 : lambda; }
+
+// sum map(lambda) v v^T over the eigenpairs of h; NaN where the solver does not converge.
+// N: 6, 9, 12.
+template <int N>
+PackedSym<double, N> MapEigenvalues(const PackedSym<double, N>& h, EigenvalueMap map);
+
+// map^T (sum_m lambda[m] v[m] v[m]^T) map, one outer product after the other and then the products
+// of the reduced frame, as one writes them in Eigen. Where `eigenvalues` is given, the eigenvalues
+// of the sum are mapped first. F x D: 9 x 12.
+template <int F, int D>
+PackedSym<double, D> PullBackInEigen(const double* lambda, const Vec<double, F>* v, int count,
+                                     const double (&map)[F][D], EigenvalueMap eigenvalues);
+
+// The same of an energy's frame terms, added up. `weights` turns the modes of a term into those
+// that count.
+template <class E, class Weights>
+PackedSym<double, E::kDofs> FilterInFrame(const Vec<double, E::kDofs>& x,
+                                          const Vec<double, E::kParams>& p, Weights weights,
+                                          EigenvalueMap eigenvalues = nullptr) {
+  PackedSym<double, E::kDofs> sum{};
+  const auto add = [&](const auto& term) {
+    const auto modes = weights(term.modes);
+    const auto part =
+        PullBackInEigen(modes.lambda, modes.v, modes.kCount, term.map, eigenvalues);
+    for (int k = 0; k < part.kSize; ++k) sum.a[k] += part.a[k];
+  };
+  std::apply([&](const auto&... term) { (add(term), ...); }, E::FrameTerms(x, p));
+  return sum;
+}
+
+}  // namespace definite

@@ -1,0 +1,16 @@
+#pragma once
+
+// Penalties of the signed length.
+
+#include "kernels/energies/collision.hpp"
+#include "kernels/lengths/signed.hpp"
+#include "kernels/penalties/quadratic.hpp"
+#include "kernels/stencils/edge_edge.hpp"
+#include "kernels/stencils/vertex_face.hpp"
+
+namespace definite {
+
+DEFINITE_ENERGY(Collision<Signed<VertexFace>, Quadratic>);
+DEFINITE_ENERGY(Collision<Signed<EdgeEdge>, Quadratic>);
+
+}  // namespace definite

@@ -1,0 +1,14 @@
+#pragma once
+
+// Penalties of the distance of a vertex to the plane of a face.
+
+#include "kernels/energies/collision.hpp"
+#include "kernels/lengths/unsigned_plane.hpp"
+#include "kernels/penalties/quadratic.hpp"
+#include "kernels/stencils/vertex_face.hpp"
+
+namespace definite {
+
+DEFINITE_ENERGY(Collision<UnsignedPlane<VertexFace>, Quadratic>);
+
+}  // namespace definite
