@@ -1,5 +1,7 @@
 #include "benchmarks/harness/batch.hpp"
 
+#include <algorithm>
+
 namespace definite {
 
 void ToTiles(const double* scalar, int numbers, std::int64_t size, double* tiled) {
@@ -20,16 +22,34 @@ void FromTiles(const double* tiled, int numbers, std::int64_t size, double* scal
 
 void Batch::Draw(const Distribution& distribution, std::uint64_t seed, std::uint64_t first,
                  std::int64_t size) {
-  size_ = size;
-  for (auto* numbers : {&x_, &tiled_x_}) numbers->Resize(Offset(size, energy_->dofs));
-  for (auto* numbers : {&p_, &tiled_p_}) numbers->Resize(Offset(size, Parameters()));
+  Resize(size);
   const DrawTarget target = {energy_->stencil, energy_->dofs, energy_->parameters};
   for (std::int64_t i = 0; i < size; ++i) {
     distribution.draw(target, seed, first + static_cast<std::uint64_t>(i),
                       x_.Data() + Offset(i, energy_->dofs), p_.Data() + Offset(i, Parameters()));
   }
-  ToTiles(x_.Data(), energy_->dofs, size, tiled_x_.Data());
-  ToTiles(p_.Data(), Parameters(), size, tiled_p_.Data());
+  Tile();
+}
+
+void Batch::Take(const Batch& from, std::span<const std::int64_t> indices) {
+  Resize(WholeTiles(static_cast<std::int64_t>(indices.size())));
+  for (std::int64_t i = 0; i < size_; ++i) {
+    const std::int64_t source = indices[std::min(static_cast<std::size_t>(i), indices.size() - 1)];
+    std::copy_n(from.X(source), energy_->dofs, x_.Data() + Offset(i, energy_->dofs));
+    std::copy_n(from.P(source), Parameters(), p_.Data() + Offset(i, Parameters()));
+  }
+  Tile();
+}
+
+void Batch::Resize(std::int64_t size) {
+  size_ = size;
+  for (auto* numbers : {&x_, &tiled_x_}) numbers->Resize(Offset(size, energy_->dofs));
+  for (auto* numbers : {&p_, &tiled_p_}) numbers->Resize(Offset(size, Parameters()));
+}
+
+void Batch::Tile() {
+  ToTiles(x_.Data(), energy_->dofs, size_, tiled_x_.Data());
+  ToTiles(p_.Data(), Parameters(), size_, tiled_p_.Data());
 }
 
 void RunOne(const KernelRow& row, const double* x, const double* p, double* out) {

@@ -3,6 +3,7 @@
 // Configurations drawn for one energy, in the layouts the rows want.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "benchmarks/harness/sampling/distribution.hpp"
@@ -40,6 +41,10 @@ class Batch {
   void Draw(const Distribution& distribution, std::uint64_t seed, std::uint64_t first,
             std::int64_t size);
 
+  // Takes some configurations of another batch of the same energy, and fills up to whole tiles with
+  // the last of them.
+  void Take(const Batch& from, std::span<const std::int64_t> indices);
+
   std::int64_t Size() const { return size_; }
   // Configuration i, in scalar layout.
   const double* X(std::int64_t i) const { return x_.Data() + Offset(i, energy_->dofs); }
@@ -54,6 +59,8 @@ class Batch {
   }
 
  private:
+  void Resize(std::int64_t size);
+  void Tile();
   int Parameters() const { return static_cast<int>(energy_->parameters.size()); }
   static std::size_t Offset(std::int64_t i, int numbers) {
     return static_cast<std::size_t>(i * numbers);

@@ -62,6 +62,11 @@ double Norm(std::span<const double> v) {
   return std::sqrt(sum);
 }
 
+// 1 where nothing had to change and nothing did.
+double Excess(double change, double least_change) {
+  return change == 0 && least_change == 0 ? 1 : change / least_change;
+}
+
 // How many eigenvalues of a are clearly positive.
 long PositiveCount(Packed a) {
   const double threshold = kRatioBound * PackedRows(a) * kUnit * FrobeniusNorm(a);
@@ -72,25 +77,36 @@ long PositiveCount(Packed a) {
 
 // The definitions of the filters at one configuration, each computed once for all rows.
 struct Examiner::Definitions {
-  reference::Truth<double> truth;
-  reference::Truth<Quad> quad_truth;
-  std::map<const void*, reference::Matrix<double>> matrices;
-  std::map<const void*, reference::Matrix<Quad>> quad_matrices;
-
   Definitions(const reference::Energy<double>& energy, const reference::Energy<Quad>& quad_energy,
               const double* x, const double* p)
-      : truth(energy, x, p), quad_truth(quad_energy, x, p) {}
+      : energy_(energy), quad_energy_(quad_energy), x_(x), p_(p) {}
 
   const reference::Matrix<double>& Of(const reference::Filter<double>& filter) {
-    auto [at, is_new] = matrices.try_emplace(&filter);
-    if (is_new) at->second = filter.define(truth);
+    auto [at, is_new] = matrices_.try_emplace(&filter);
+    if (is_new) {
+      if (!truth_) truth_.emplace(energy_, x_, p_);
+      at->second = filter.define(*truth_);
+    }
     return at->second;
   }
   const reference::Matrix<Quad>& Of(const reference::Filter<Quad>& filter) {
-    auto [at, is_new] = quad_matrices.try_emplace(&filter);
-    if (is_new) at->second = filter.define(quad_truth);
+    auto [at, is_new] = quad_matrices_.try_emplace(&filter);
+    if (is_new) at->second = filter.define(QuadTruth());
     return at->second;
   }
+  reference::Truth<Quad>& QuadTruth() {
+    if (!quad_truth_) quad_truth_.emplace(quad_energy_, x_, p_);
+    return *quad_truth_;
+  }
+
+ private:
+  const reference::Energy<double>& energy_;
+  const reference::Energy<Quad>& quad_energy_;
+  const double *x_, *p_;
+  std::optional<reference::Truth<double>> truth_;  // most configurations ask for neither
+  std::optional<reference::Truth<Quad>> quad_truth_;
+  std::map<const void*, reference::Matrix<double>> matrices_;
+  std::map<const void*, reference::Matrix<Quad>> quad_matrices_;
 };
 
 Examiner::Examiner(const EnergyRow& energy, std::span<const KernelRow* const> rows)
@@ -149,6 +165,8 @@ void Examiner::Examine(const double* x, const double* p, Packed h, Packed neares
 
   configuration_.indefinite = !IsPsd(h);
   configuration_.conditioning = reference_->conditioning(x, p);
+  const Exact exact = {h, nearest, FrobeniusNorm(h), FrobeniusNorm(nearest),
+                       FrobeniusDistance(nearest, h)};
   Definitions definitions(*reference_, *quad_reference_, x, p);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     // Lanes give the same bits as the scalar row before them, as a rule: no need to look twice.
@@ -156,7 +174,7 @@ void Examiner::Examine(const double* x, const double* p, Packed h, Packed neares
     if (twin < r) {
       figures_[r] = figures_[twin];
     } else {
-      ExamineRow(r, x, p, h, nearest, outputs[r], depth, definitions);
+      ExamineRow(r, x, p, exact, outputs[r], depth, definitions);
     }
   }
   if (depth >= Depth::kTruth) ExamineEnergy(x, p, definitions);
@@ -172,8 +190,8 @@ std::size_t Examiner::TwinOf(std::size_t r, std::span<const Packed> outputs) con
   return twin;
 }
 
-void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, Packed h,
-                          Packed nearest, Packed f, Depth depth, Definitions& definitions) {
+void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const Exact& exact,
+                          Packed f, Depth depth, Definitions& definitions) {
   const KernelRow& row = *rows_[r];
   RowFigures& figures = figures_[r];
   const auto breaks = [&](Property property) {
@@ -184,18 +202,18 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, Packe
     breaks(Property::kFinite);
     return;
   }
-  const double h_norm = FrobeniusNorm(h), nearest_norm = FrobeniusNorm(nearest);
-  figures.distance = RelativeDistance(f, nearest);
-  const double change = FrobeniusDistance(f, h), least_change = FrobeniusDistance(nearest, h);
-  figures.excess = change == 0 && least_change == 0 ? 1 : change / least_change;
+  const double norm = FrobeniusNorm(f);
+  const double distance = FrobeniusDistance(f, exact.nearest);
+  figures.distance = distance == 0 ? 0 : distance / exact.nearest_norm;
+  figures.excess = Excess(FrobeniusDistance(f, exact.h), exact.least_change);
 
-  if (FrobeniusNorm(f) > kGrowth * h_norm) figures.verdict = Verdict::kDegraded;
+  if (norm > kGrowth * exact.h_norm) figures.verdict = Verdict::kDegraded;
   if (depth >= Depth::kDefinition) {
     figures.defined = true;
     const double bound = kDegraded / configuration_.conditioning;
     double error = RelativeError(f, definitions.Of(*filters_[r]));
     // Written so that a NaN is doubted too.
-    const bool ill_conditioned = !(kUnit * h_norm <= kIllConditioned * nearest_norm);
+    const bool ill_conditioned = !(kUnit * exact.h_norm <= kIllConditioned * exact.nearest_norm);
     if (depth >= Depth::kTruth || ill_conditioned || !(error <= kDoubt * bound)) {
       ExamineTruth(r, f, definitions);
       error = *figures.rounding * energy_->dofs * kUnit;
@@ -207,14 +225,14 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, Packe
     figures.verdict = Verdict::kNonPsd;
     breaks(Property::kPsd);
   }
-  if (AllZero(f) && !AllZero(h)) figures.verdict = Verdict::kSilentZero;
+  if (norm == 0 && exact.h_norm != 0) figures.verdict = Verdict::kSilentZero;
   if (depth >= Depth::kSpectral) {
-    ExamineSpectrum(r, x, p, h, f);
+    ExamineSpectrum(r, x, p, exact, f);
     const double bound = Bound();
-    if (*figures.majorises * h_norm > bound * (h_norm + FrobeniusNorm(f))) {
+    if (*figures.majorises * exact.h_norm > bound * (exact.h_norm + norm)) {
       breaks(Property::kMajorises);
     }
-    if (*figures.relabelling * FrobeniusNorm(f) > 2 * bound * (h_norm + FrobeniusNorm(f))) {
+    if (*figures.relabelling * norm > 2 * bound * (exact.h_norm + norm)) {
       breaks(Property::kRelabelling);
     }
   }
@@ -227,20 +245,19 @@ void Examiner::ExamineTruth(std::size_t r, Packed f, Definitions& definitions) {
   figures.conditioned_rounding = *figures.rounding * configuration_.conditioning;
   figures.flip = PositiveCount(f) != PositiveCount(ToPacked(definition));
   // The double P carries an error of u |H|; the true one replaces it here.
-  const reference::Matrix<Quad>& exact = definitions.quad_truth.Hessian();
-  const reference::Matrix<Quad>& nearest = definitions.quad_truth.Nearest();
+  const reference::Matrix<Quad>& exact = definitions.QuadTruth().Hessian();
+  const reference::Matrix<Quad>& nearest = definitions.QuadTruth().Nearest();
   figures.distance = RelativeError(f, nearest);
-  const double change = DistanceTo(f, exact), least_change = NormOf(exact - nearest);
-  figures.excess = change == 0 && least_change == 0 ? 1 : change / least_change;
+  figures.excess = Excess(DistanceTo(f, exact), NormOf(exact - nearest));
 }
 
-void Examiner::ExamineSpectrum(std::size_t r, const double* x, const double* p, Packed h,
-                               Packed f) {
+void Examiner::ExamineSpectrum(std::size_t r, const double* x, const double* p,
+                               const Exact& exact, Packed f) {
   RowFigures& figures = figures_[r];
-  const double norm = FrobeniusNorm(f), h_norm = FrobeniusNorm(h);
+  const double norm = FrobeniusNorm(f), h_norm = exact.h_norm;
   const auto below_zero = [](Packed a) { return std::max(0.0, -Eigenvalues(a).front()); };
   figures.psd_defect = norm == 0 ? 0 : below_zero(f) / (energy_->dofs * kUnit * norm);
-  figures.majorises = h_norm == 0 ? 0 : below_zero(Difference(f, h)) / h_norm;
+  figures.majorises = h_norm == 0 ? 0 : below_zero(Difference(f, exact.h)) / h_norm;
 
   const int n = energy_->dofs, dimension = energy_->dimension, vertices = n / dimension;
   const auto at = [n](int i, int j) {
@@ -278,7 +295,7 @@ void Examiner::ExamineEnergy(const double* x, const double* p, Definitions& defi
   energy_->gradient(x, p, gradient.data(), 1);
 
   // Errors in units of what a perturbation of x by one rounding does.
-  reference::Truth<Quad>& truth = definitions.quad_truth;
+  reference::Truth<Quad>& truth = definitions.QuadTruth();
   std::vector<double> exact_gradient, error;
   for (std::size_t i = 0; i < n; ++i) {
     const Quad exact = truth.Gradient()[static_cast<int>(i)];

@@ -80,11 +80,18 @@ class Examiner {
  private:
   struct Definitions;
 
+  // H and P in double, and what every row asks of them.
+  struct Exact {
+    Packed h, nearest;
+    double h_norm, nearest_norm, least_change;  // |H|, |P|, |P - H|
+  };
+
   // The first row of the same filter with the same bits, r itself if there is none before it.
   std::size_t TwinOf(std::size_t r, std::span<const Packed> outputs) const;
-  void ExamineRow(std::size_t r, const double* x, const double* p, Packed h, Packed nearest,
-                  Packed f, Depth depth, Definitions& definitions);
-  void ExamineSpectrum(std::size_t r, const double* x, const double* p, Packed h, Packed f);
+  void ExamineRow(std::size_t r, const double* x, const double* p, const Exact& exact, Packed f,
+                  Depth depth, Definitions& definitions);
+  void ExamineSpectrum(std::size_t r, const double* x, const double* p, const Exact& exact,
+                       Packed f);
   void ExamineTruth(std::size_t r, Packed f, Definitions& definitions);
   void ExamineEnergy(const double* x, const double* p, Definitions& definitions);
   double Bound() const;  // of an error relative to |F|, by the conditioning

@@ -12,20 +12,25 @@ namespace {
 constexpr int kMaxRows = 12;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxRows, kMaxRows>;
 
-// sqrt(sum of squares of the full matrix) of the entries entry(k).
+// sqrt(sum of squares of the full matrix) of the entries entry(k). Eight partial sums: one would
+// wait for itself.
 template <class Entry>
-double PackedNorm(int n, Entry entry) {
-  double diagonal = 0, above = 0;
+double PackedNorm(std::size_t size, int n, Entry entry) {
+  double partial[8] = {};
   std::size_t k = 0;
-  for (int i = 0; i < n; ++i) {
-    const double d = entry(k++);
-    diagonal += d * d;
-    for (int j = i + 1; j < n; ++j) {
-      const double a = entry(k++);
-      above += a * a;
-    }
+  for (; k + 8 <= size; k += 8) {
+    for (std::size_t i = 0; i < 8; ++i) partial[i] += entry(k + i) * entry(k + i);
   }
-  return std::sqrt(diagonal + 2 * above);
+  for (; k < size; ++k) partial[0] += entry(k) * entry(k);
+  double diagonal = 0;
+  k = 0;
+  for (int i = 0; i < n; ++i) {
+    diagonal += entry(k) * entry(k);
+    k += static_cast<std::size_t>(n - i);
+  }
+  const double sum = ((partial[0] + partial[1]) + (partial[2] + partial[3])) +
+                     ((partial[4] + partial[5]) + (partial[6] + partial[7]));
+  return std::sqrt(sum + (sum - diagonal));
 }
 
 }  // namespace
@@ -37,11 +42,11 @@ int PackedRows(Packed a) {
 }
 
 double FrobeniusNorm(Packed a) {
-  return PackedNorm(PackedRows(a), [&](std::size_t k) { return a[k]; });
+  return PackedNorm(a.size(), PackedRows(a), [&](std::size_t k) { return a[k]; });
 }
 
 double FrobeniusDistance(Packed a, Packed b) {
-  return PackedNorm(PackedRows(a), [&](std::size_t k) { return a[k] - b[k]; });
+  return PackedNorm(a.size(), PackedRows(a), [&](std::size_t k) { return a[k] - b[k]; });
 }
 
 bool AllFinite(Packed a) {
@@ -62,22 +67,18 @@ bool IsPsd(Packed a) {
   const double norm = FrobeniusNorm(a);
   if (!(norm < std::numeric_limits<double>::infinity())) return false;
   if (norm == 0) return true;
-  double m[kMaxRows][kMaxRows];
+  double m[kMaxRows][kMaxRows] = {};  // the upper triangle; rows of full length suit the machine
   std::size_t k = 0;
   for (int i = 0; i < n; ++i) {
-    for (int j = i; j < n; ++j) m[j][i] = a[k++];
+    for (int j = i; j < n; ++j) m[i][j] = a[k++];
     m[i][i] += kRatioBound * n * kUnit * norm;
   }
   for (int j = 0; j < n; ++j) {
-    double pivot = m[j][j];
-    for (int c = 0; c < j; ++c) pivot -= m[j][c] * m[j][c];
+    const double pivot = m[j][j];
     if (!(pivot > 0)) return false;
-    const double root = std::sqrt(pivot), inverse = 1 / root;
-    m[j][j] = root;
     for (int i = j + 1; i < n; ++i) {
-      double sum = m[i][j];
-      for (int c = 0; c < j; ++c) sum -= m[i][c] * m[j][c];
-      m[i][j] = sum * inverse;
+      const double factor = m[j][i] / pivot;
+      for (int c = 0; c < kMaxRows; ++c) m[i][c] -= factor * m[j][c];
     }
   }
   return true;

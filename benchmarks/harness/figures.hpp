@@ -22,7 +22,7 @@ bool AllZero(Packed a);
 // |a - b| / |b|, where 0/0 is 0.
 double RelativeDistance(Packed a, Packed b);
 
-// Whether lambda_min(a) >= -kRatioBound n u |a|, by a shifted Cholesky factorisation.
+// Whether lambda_min(a) >= -kRatioBound n u |a|, by the pivots of the shifted matrix.
 bool IsPsd(Packed a);
 
 // All eigenvalues, ascending; NaN if the solver does not converge.

@@ -79,14 +79,37 @@ const RowResult* Baseline(const EnergyResult& energy, std::string_view filter) {
   return nullptr;
 }
 
+using Rounds = std::vector<double> RowTiming::*;
+
 // Round by round: baseline / row.
-std::optional<MedianEstimate> RatioTo(const RowResult* baseline, const RowResult& row) {
+std::optional<MedianEstimate> RatioTo(const RowResult* baseline, const RowResult& row,
+                                      Rounds rounds) {
   if (!baseline) return std::nullopt;
   std::vector<double> ratios;
-  for (std::size_t i = 0; i < row.timing.rounds.size(); ++i) {
-    ratios.push_back(baseline->timing.rounds[i] / row.timing.rounds[i]);
+  for (std::size_t i = 0; i < (row.timing.*rounds).size(); ++i) {
+    ratios.push_back((baseline->timing.*rounds)[i] / (row.timing.*rounds)[i]);
   }
   return EstimateMedian(ratios);
+}
+
+Json TimingToJson(const SweepPlan& plan, const EnergyResult& energy, const RowResult& r,
+                  const char* pairs, Rounds rounds) {
+  Json timing;
+  timing["pairs"] = pairs;
+  timing["threads"] = plan.threads;
+  timing["clock"] = plan.threads == 1 ? "thread_cpu" : "wall";
+  timing["rounds"] = (r.timing.*rounds).size();
+  timing["output"] = r.row->output;
+  timing["ring"] = "L1";
+  timing["ring_configurations"] = kRing;
+  timing["stages"] = {"frame", "hessian", "filter", "write"};
+  timing["ns_per_hessian"] = ToJson(EstimateMedian(r.timing.*rounds), 1e9);
+  for (std::string_view filter : kBaselines) {
+    timing["ratio_to"][std::string(filter)] =
+        ToJson(RatioTo(Baseline(energy, filter), r, rounds), 1);
+  }
+  timing["ratio_to"]["floor"] = nullptr;
+  return timing;
 }
 
 double Fraction(std::uint64_t part, std::uint64_t whole) {
@@ -110,22 +133,11 @@ Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowR
   row["active_fraction"] = e.count ? Json(Fraction(e.active, e.count)) : Json();
   row["indefinite_fraction"] = e.active ? Json(Fraction(e.indefinite, e.active)) : Json();
   row["timing"] = Json::array();
-  if (!r.timing.rounds.empty()) {
-    Json timing;
-    timing["threads"] = plan.threads;
-    timing["clock"] = plan.threads == 1 ? "thread_cpu" : "wall";
-    timing["rounds"] = r.timing.rounds.size();
-    timing["output"] = r.row->output;
-    timing["ring"] = "L1";
-    timing["ring_configurations"] = kRing;
-    timing["stages"] = {"frame", "hessian", "filter", "write"};
-    timing["ns_per_hessian"] = ToJson(EstimateMedian(r.timing.rounds), 1e9);
-    for (std::string_view filter : kBaselines) {
-      timing["ratio_to"][std::string(filter)] =
-          ToJson(RatioTo(Baseline(energy, filter), r), 1);
-    }
-    timing["ratio_to"]["floor"] = nullptr;
-    row["timing"].push_back(timing);
+  if (!r.timing.all.empty()) {
+    row["timing"].push_back(TimingToJson(plan, energy, r, "all", &RowTiming::all));
+  }
+  if (!r.timing.active.empty()) {
+    row["timing"].push_back(TimingToJson(plan, energy, r, "active", &RowTiming::active));
   }
   const auto figure = [&](const Figure& f, std::optional<double> RowFigures::*exact) {
     return ToJson(f, plan, *energy.energy, r.worst_cases, exact, detail);
@@ -223,8 +235,8 @@ std::string ToTable(const SweepResult& result) {
                          "Hessian", "/ this", "median", "p99", "max", "max", "defect", "verdict");
     for (const RowResult& r : energy.rows) {
       const RowStatistics& s = r.statistics;
-      const auto time = EstimateMedian(r.timing.rounds);
-      const auto ratio = RatioTo(Baseline(energy, "numeric"), r);
+      const auto time = EstimateMedian(r.timing.all);
+      const auto ratio = RatioTo(Baseline(energy, "numeric"), r, &RowTiming::all);
       table += fmt::format(
           "{:<19}{:<6}{:>7}{:>8} |{:>8}{:>8}{:>8} |{:>8}{:>8} | {}\n", r.row->filter,
           r.row->scalar, time ? fmt::format("{:.1f}", time->median * 1e9) : "-",

@@ -28,9 +28,10 @@ struct SweepPlan {
   bool timing = true;
 };
 
-// Seconds per configuration of one row, a number for each round.
+// Seconds per configuration of one row, a number for each round: of all configurations, and of
+// those where the energy acts (a round without any is left out).
 struct RowTiming {
-  std::vector<double> rounds;
+  std::vector<double> all, active;
 };
 
 // What the checked pass knows of one row.

@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <ctime>
 #include <numeric>
@@ -27,14 +28,50 @@ double WallSeconds() {
       .count();
 }
 
-// Runs a row over the batch into the ring.
-void RunInto(const KernelRow& row, const Batch& batch, double* ring) {
+// Seconds that a row takes over the batch, its outputs going round in the ring.
+double TimeOf(const KernelRow& row, const Batch& batch, double* ring, double (*clock)()) {
+  const double start = clock();
   for (std::int64_t i = 0; i < batch.Size(); i += kRing) {
     const std::int64_t size = std::min<std::int64_t>(kRing, batch.Size() - i);
     row.run(batch.TilesX(row.lanes, i), batch.TilesP(row.lanes, i), ring, size / row.lanes);
     asm volatile("" : : "r"(ring) : "memory");  // the outputs count as used
   }
+  return clock() - start;
 }
+
+// The configurations of a block by whether the energy acts. Each part is timed on its own, so that
+// one measurement gives the time of the active ones and that of all.
+class Parts {
+ public:
+  explicit Parts(const EnergyRow& energy) : energy_(energy), batch_{Batch(energy), Batch(energy)} {}
+
+  void Split(const Batch& block, std::int64_t size) {
+    for (auto& indices : indices_) indices.clear();
+    for (std::int64_t i = 0; i < size; ++i) {
+      double classification[3];
+      energy_.classify(block.X(i), block.P(i), classification, 1);
+      indices_[classification[0] == 1 ? kActive : kIdle].push_back(i);
+    }
+    for (std::size_t part : {kActive, kIdle}) {
+      if (Count(part)) batch_[part].Take(block, indices_[part]);
+    }
+  }
+
+  static constexpr std::size_t kActive = 0, kIdle = 1;
+  std::int64_t Count(std::size_t part) const { return std::ssize(indices_[part]); }
+
+  // Seconds for the configurations of one part; what fills up its last tile is taken off.
+  double TimeOf(std::size_t part, const KernelRow& row, double* ring, double (*clock)()) const {
+    if (!Count(part)) return 0;
+    return definite::TimeOf(row, batch_[part], ring, clock) * static_cast<double>(Count(part)) /
+           static_cast<double>(batch_[part].Size());
+  }
+
+ private:
+  const EnergyRow& energy_;
+  Batch batch_[2];
+  std::vector<std::int64_t> indices_[2];
+};
 
 // The rows in a random order that depends on the block alone.
 std::vector<std::size_t> Shuffled(std::size_t count, std::uint64_t seed, std::uint64_t block) {
@@ -64,17 +101,20 @@ void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<Ro
     const std::uint64_t last = plan.count * static_cast<std::uint64_t>(round + 1) /
                                static_cast<std::uint64_t>(rounds);
     const auto blocks = static_cast<std::int64_t>((last - first + kBlock - 1) / kBlock);
-    // seconds[t][r]: time of thread t in row r. Configurations are counted likewise, since the last
-    // block is filled up to whole tiles.
-    std::vector<std::vector<double>> seconds(threads, std::vector<double>(rows.size()));
-    std::vector<std::int64_t> configurations(threads);
+    // Of each thread: seconds in each row, of the active and the idle, and how many there were.
+    struct Share {
+      std::vector<std::array<double, 2>> seconds;
+      std::array<std::int64_t, 2> counts{};
+    };
+    std::vector<Share> shares(threads, {std::vector<std::array<double, 2>>(rows.size()), {}});
     bool stopped = false;
 #pragma omp parallel num_threads(plan.threads)
     {
-      const auto t = static_cast<std::size_t>(omp_get_thread_num());
+      Share& mine = shares[static_cast<std::size_t>(omp_get_thread_num())];
       // One thread: its processor time. More: wall time, since they share the machine.
       double (*const clock)() = threads == 1 ? ThreadSeconds : WallSeconds;
-      Batch batch(energy);
+      Batch block_of_all(energy);
+      Parts parts(energy);
       AlignedDoubles ring;
       std::size_t outputs = 0;
       for (const RowResult& r : rows) {
@@ -90,23 +130,35 @@ void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<Ro
         }
         const std::uint64_t begin = first + static_cast<std::uint64_t>(block * kBlock);
         const auto size = std::min<std::int64_t>(kBlock, static_cast<std::int64_t>(last - begin));
-        batch.Draw(*plan.distribution, plan.seed, begin, WholeTiles(size));
+        block_of_all.Draw(*plan.distribution, plan.seed, begin, WholeTiles(size));
+        parts.Split(block_of_all, size);
         for (std::size_t r : Shuffled(rows.size(), plan.seed, begin)) {
-          const double start = clock();
-          RunInto(*rows[r].row, batch, ring.Data());
-          seconds[t][r] += clock() - start;
+          for (std::size_t part : {Parts::kActive, Parts::kIdle}) {
+            mine.seconds[r][part] += parts.TimeOf(part, *rows[r].row, ring.Data(), clock);
+          }
         }
-        configurations[t] += batch.Size();
+        for (std::size_t part : {Parts::kActive, Parts::kIdle}) {
+          mine.counts[part] += parts.Count(part);
+        }
         progress.Advance(static_cast<std::uint64_t>(size));
       }
     }
     if (stopped) return;
-    const auto total = static_cast<double>(
-        std::accumulate(configurations.begin(), configurations.end(), std::int64_t{0}));
+    std::int64_t active = 0, all = 0;
+    for (const Share& share : shares) {
+      active += share.counts[Parts::kActive];
+      all += share.counts[Parts::kActive] + share.counts[Parts::kIdle];
+    }
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      double slowest = 0;  // the threads run side by side: the last one to finish counts
-      for (std::size_t t = 0; t < threads; ++t) slowest = std::max(slowest, seconds[t][r]);
-      rows[r].timing.rounds.push_back(slowest / total);
+      // The threads run side by side: the last one to finish counts.
+      double slowest = 0, slowest_active = 0;
+      for (const Share& share : shares) {
+        const auto [of_active, of_idle] = share.seconds[r];
+        slowest = std::max(slowest, of_active + of_idle);
+        slowest_active = std::max(slowest_active, of_active);
+      }
+      rows[r].timing.all.push_back(slowest / static_cast<double>(all));
+      if (active) rows[r].timing.active.push_back(slowest_active / static_cast<double>(active));
     }
   }
 }
