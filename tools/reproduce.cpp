@@ -32,36 +32,50 @@ nlohmann::ordered_json Read(const std::string& path) {
   return json;
 }
 
-int RunReproduce(const Options& options) {
-  if (options.from) {
-    fmt::print("{}", ShiKim2023::Markdown(Read(*options.from)));
-    return kOk;
-  }
+// Measures what the paper's tables need.
+SweepResult Measure(const Options& options) {
   SweepPlan plan;
   plan.rows = RowsMatching(ShiKim2023::Rows());
   plan.distribution = &DistributionNamed(ShiKim2023::kDistribution);
   plan.count = options.run.Count();
   plan.seed = options.run.Seed();
   plan.threads = options.run.Threads();
+  Progress progress(isatty(STDERR_FILENO) != 0);
+  return RunSweep(plan, progress);
+}
+
+int RunReproduce(const Options& options) {
   std::optional<OutputFile> json_file, markdown_file;
   if (options.json) json_file.emplace("--json", *options.json);
   if (options.markdown) markdown_file.emplace("--markdown", *options.markdown);
 
-  Progress progress(isatty(STDERR_FILENO) != 0);
-  const SweepResult result = RunSweep(plan, progress);
-
-  nlohmann::ordered_json json = ToJson(result, CommandWords(), Detail::kSummaries);
-  json["paper"] = ShiKim2023::kName;
-  json["claims"] = ShiKim2023::Claims(json);
-  const std::string markdown = ShiKim2023::Markdown(json);
+  nlohmann::ordered_json json;
+  std::string broken;
+  bool partial = false;
+  if (options.from) {
+    json = Read(*options.from);
+  } else {
+    const SweepResult result = Measure(options);
+    json = ToJson(result, CommandWords(), Detail::kSummaries);
+    json["paper"] = ShiKim2023::kName;
+    broken = BrokenPromises(result);
+    partial = result.partial;
+  }
+  std::string markdown;
+  try {
+    json["claims"] = ShiKim2023::Claims(json);
+    markdown = ShiKim2023::Markdown(json);
+  } catch (const std::exception& error) {
+    if (!options.from) throw;
+    throw UsageError(fmt::format("--from '{}': {}", *options.from, error.what()));
+  }
   if (options.json != "-") fmt::print("{}", markdown);
-  const std::string broken = BrokenPromises(result);
   std::fputs(broken.c_str(), stderr);
   if (json_file) {
     json_file->Commit(json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }
   if (markdown_file) markdown_file->Commit(markdown);
-  if (result.partial) {
+  if (partial) {
     std::fputs("definite: interrupted; the result is partial: what was complete by then\n", stderr);
     return kInterrupted;
   }
@@ -84,7 +98,8 @@ void AddReproduce(CLI::App& app, int& exit_code) {
   command->add_option("--markdown", options->markdown, "Write the tables to FILE too")
       ->type_name("FILE");
   command
-      ->add_option("--from", options->from, "Measure nothing: the tables of an earlier --json FILE")
+      ->add_option("--from", options->from,
+                   "Measure nothing: tables and claims of an earlier --json FILE")
       ->type_name("FILE");
   command->footer(
       "Examples:\n"

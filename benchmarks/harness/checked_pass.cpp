@@ -77,8 +77,8 @@ std::set<std::uint64_t> WorstCases(const EnergyResult& result) {
   std::set<std::uint64_t> indices;
   for (const RowResult& r : result.rows) {
     const RowStatistics& s = r.statistics;
-    for (const Figure* figure : {&s.distance, &s.excess, &s.psd_defect, &s.majorises,
-                                 &s.relabelling}) {
+    for (const Figure* figure :
+         {&s.distance, &s.excess, &s.psd_defect, &s.majorises, &s.relabelling}) {
       if (const auto summary = figure->Summarize()) indices.insert(summary->max.index);
     }
   }

@@ -15,10 +15,10 @@ namespace {
 
 using reference::Quad;
 
-constexpr double kDegraded = 1e-10;      // relative error beyond which a filter is degraded
-constexpr double kDoubt = 0.1;           // of a bound: beyond it double precision does not decide
+constexpr double kDegraded = 1e-10;        // relative error beyond which a filter is degraded
+constexpr double kDoubt = 0.1;             // of a bound: beyond it double precision does not decide
 constexpr double kIllConditioned = 1e-10;  // u |H|/|P| beyond which it does not either
-constexpr double kGrowth = 4;            // |F| > kGrowth |H| counts as degraded
+constexpr double kGrowth = 4;              // |F| > kGrowth |H| counts as degraded
 
 template <class T>
 double NormOf(const reference::Matrix<T>& m) {
@@ -182,9 +182,9 @@ void Examiner::Examine(const double* x, const double* p, Packed h, Packed neares
 
 std::size_t Examiner::TwinOf(std::size_t r, std::span<const Packed> outputs) const {
   std::size_t twin = 0;
-  while (twin < r && (rows_[twin]->filter != rows_[r]->filter ||
-                      std::memcmp(outputs[twin].data(), outputs[r].data(),
-                                  outputs[r].size_bytes()) != 0)) {
+  while (twin < r &&
+         (rows_[twin]->filter != rows_[r]->filter ||
+          std::memcmp(outputs[twin].data(), outputs[r].data(), outputs[r].size_bytes()) != 0)) {
     ++twin;
   }
   return twin;
@@ -251,8 +251,8 @@ void Examiner::ExamineTruth(std::size_t r, Packed f, Definitions& definitions) {
   figures.excess = Excess(DistanceTo(f, exact), NormOf(exact - nearest));
 }
 
-void Examiner::ExamineSpectrum(std::size_t r, const double* x, const double* p,
-                               const Exact& exact, Packed f) {
+void Examiner::ExamineSpectrum(std::size_t r, const double* x, const double* p, const Exact& exact,
+                               Packed f) {
   RowFigures& figures = figures_[r];
   const double norm = FrobeniusNorm(f), h_norm = exact.h_norm;
   const auto below_zero = [](Packed a) { return std::max(0.0, -Eigenvalues(a).front()); };
@@ -306,13 +306,11 @@ void Examiner::ExamineEnergy(const double* x, const double* p, Definitions& defi
   const double value_error = std::abs(static_cast<double>(Quad(value) - truth.Value()));
   const auto ratio = [&](double distance, double scale) {
     return distance == 0 ? 0
-                         : distance / scale * configuration_.conditioning /
-                               (energy_->dofs * kUnit);
+                         : distance / scale * configuration_.conditioning / (energy_->dofs * kUnit);
   };
   configuration_.value_rounding =
       ratio(value_error, std::abs(static_cast<double>(truth.Value())) + g_norm * x_norm);
-  configuration_.gradient_rounding =
-      ratio(Norm(error), g_norm + NormOf(truth.Hessian()) * x_norm);
+  configuration_.gradient_rounding = ratio(Norm(error), g_norm + NormOf(truth.Hessian()) * x_norm);
   const double worst = std::max(*configuration_.value_rounding, *configuration_.gradient_rounding);
   if (!(worst * energy_->dofs * kUnit <= kDegraded)) {
     for (RowFigures& figures : figures_) figures.verdict = Verdict::kInconsistent;

@@ -92,8 +92,7 @@ std::vector<double> Eigenvalues(Packed a) {
     for (int j = i; j < n; ++j) full(i, j) = full(j, i) = a[k++];
   }
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(full, Eigen::EigenvaluesOnly);
-  std::vector<double> values(static_cast<std::size_t>(n),
-                             std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> values(static_cast<std::size_t>(n), std::numeric_limits<double>::quiet_NaN());
   if (solver.info() == Eigen::Success) {
     std::copy_n(solver.eigenvalues().data(), n, values.begin());
   }

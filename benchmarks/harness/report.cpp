@@ -180,9 +180,9 @@ std::string VerdictSummary(const RowStatistics& s) {
   std::uint64_t total = 0;
   for (std::uint64_t n : s.verdicts) total += n;
   if (total == 0) return "-";
-  for (Verdict v : {Verdict::kCrash, Verdict::kNonFinite, Verdict::kInconsistent,
-                    Verdict::kSilentZero, Verdict::kNonPsd, Verdict::kDegraded,
-                    Verdict::kOutOfDomain}) {
+  for (Verdict v :
+       {Verdict::kCrash, Verdict::kNonFinite, Verdict::kInconsistent, Verdict::kSilentZero,
+        Verdict::kNonPsd, Verdict::kDegraded, Verdict::kOutOfDomain}) {
     const auto i = static_cast<std::size_t>(v);
     if (s.verdicts[i]) {
       const double percent = 100 * Fraction(s.verdicts[i], total);
@@ -224,11 +224,11 @@ std::string ToTable(const SweepResult& result) {
   std::string table;
   for (const EnergyResult& energy : result.energies) {
     const EnergyStatistics& e = energy.statistics;
-    table += fmt::format("{}\n{}, seed {}: {} configurations, {:.4g} % active, {:.4g} % of them "
-                         "indefinite\n\n",
-                         energy.energy->name, result.plan.distribution->name, result.plan.seed,
-                         WithCommas(e.count), 100 * Fraction(e.active, e.count),
-                         100 * Fraction(e.indefinite, e.active));
+    table += fmt::format(
+        "{}\n{}, seed {}: {} configurations, {:.4g} % active, {:.4g} % of them "
+        "indefinite\n\n",
+        energy.energy->name, result.plan.distribution->name, result.plan.seed, WithCommas(e.count),
+        100 * Fraction(e.active, e.count), 100 * Fraction(e.indefinite, e.active));
     table += fmt::format("{:<19}{:<6}{:>7}{:>8} |{:>24} |{:>8}{:>8} |\n", "", "", "ns per",
                          "numeric", "distance to nearest  ", "rounding", "PSD");
     table += fmt::format("{:<19}{:<6}{:>7}{:>8} |{:>8}{:>8}{:>8} |{:>8}{:>8} | {}\n", "filter", "",
@@ -237,13 +237,13 @@ std::string ToTable(const SweepResult& result) {
       const RowStatistics& s = r.statistics;
       const auto time = EstimateMedian(r.timing.all);
       const auto ratio = RatioTo(Baseline(energy, "numeric"), r, &RowTiming::all);
-      table += fmt::format(
-          "{:<19}{:<6}{:>7}{:>8} |{:>8}{:>8}{:>8} |{:>8}{:>8} | {}\n", r.row->filter,
-          r.row->scalar, time ? fmt::format("{:.1f}", time->median * 1e9) : "-",
-          ratio ? fmt::format("{:.1f}", ratio->median) : "-",
-          Short(s.distance, &Figure::Summary::median), Short(s.distance, &Figure::Summary::p99),
-          ShortMax(s.distance), ShortMax(s.conditioned_rounding), ShortMax(s.psd_defect),
-          VerdictSummary(s));
+      table +=
+          fmt::format("{:<19}{:<6}{:>7}{:>8} |{:>8}{:>8}{:>8} |{:>8}{:>8} | {}\n", r.row->filter,
+                      r.row->scalar, time ? fmt::format("{:.1f}", time->median * 1e9) : "-",
+                      ratio ? fmt::format("{:.1f}", ratio->median) : "-",
+                      Short(s.distance, &Figure::Summary::median),
+                      Short(s.distance, &Figure::Summary::p99), ShortMax(s.distance),
+                      ShortMax(s.conditioned_rounding), ShortMax(s.psd_defect), VerdictSummary(s));
     }
     table += "\n";
   }
@@ -251,8 +251,8 @@ std::string ToTable(const SweepResult& result) {
 }
 
 std::string ReplayCommand(const SweepPlan& plan, const KernelRow& row, std::uint64_t index) {
-  return fmt::format("definite replay --kernel {} --distribution {} --seed {} --index {}",
-                     row.name, plan.distribution->name, plan.seed, index);
+  return fmt::format("definite replay --kernel {} --distribution {} --seed {} --index {}", row.name,
+                     plan.distribution->name, plan.seed, index);
 }
 
 std::string BrokenPromises(const SweepResult& result) {

@@ -38,9 +38,9 @@ struct RowTiming {
 struct RowStatistics {
   Figure distance, excess, psd_defect, majorises, relabelling, rounding, conditioned_rounding;
   std::array<std::uint64_t, kVerdictCount> verdicts{};
-  std::uint64_t defined = 0;            // configurations held against the filter's definition
+  std::uint64_t defined = 0;  // configurations held against the filter's definition
   std::uint64_t flips = 0, flip_checks = 0;
-  std::uint64_t checksum = 0;           // of all outputs, bit for bit
+  std::uint64_t checksum = 0;                // of all outputs, bit for bit
   std::map<Property, std::uint64_t> broken;  // property -> smallest index
 
   void Add(const RowFigures& figures, std::uint64_t index);

@@ -14,8 +14,10 @@ namespace definite {
 
 namespace {
 
-constexpr std::int64_t kBlock = 4096;  // configurations drawn before the clock starts: inputs in L2
+constexpr std::int64_t kBlock = 4096;  // at most drawn before the clock starts: inputs in L2
 constexpr int kMaxRounds = 15;
+
+constexpr std::int64_t CeilDivide(std::int64_t a, std::int64_t b) { return (a + b - 1) / b; }
 
 double ThreadSeconds() {
   timespec t;
@@ -24,8 +26,7 @@ double ThreadSeconds() {
 }
 
 double WallSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 // Seconds that a row takes over the batch, its outputs going round in the ring.
@@ -79,8 +80,8 @@ std::vector<std::size_t> Shuffled(std::size_t count, std::uint64_t seed, std::ui
   std::iota(order.begin(), order.end(), 0);
   Draws draws(StreamId("order of rows"), seed, block);
   for (std::size_t i = count; i > 1; --i) {
-    std::swap(order[i - 1], order[static_cast<std::size_t>(draws.Uniform() *
-                                                           static_cast<double>(i))]);
+    std::swap(order[i - 1],
+              order[static_cast<std::size_t>(draws.Uniform() * static_cast<double>(i))]);
   }
   return order;
 }
@@ -96,11 +97,14 @@ void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<Ro
   const int rounds = TimedRounds(plan.count);
   const auto threads = static_cast<std::size_t>(plan.threads);
   for (int round = 0; round < rounds; ++round) {
-    const std::uint64_t first = plan.count * static_cast<std::uint64_t>(round) /
-                                static_cast<std::uint64_t>(rounds);
-    const std::uint64_t last = plan.count * static_cast<std::uint64_t>(round + 1) /
-                               static_cast<std::uint64_t>(rounds);
-    const auto blocks = static_cast<std::int64_t>((last - first + kBlock - 1) / kBlock);
+    const std::uint64_t first =
+        plan.count * static_cast<std::uint64_t>(round) / static_cast<std::uint64_t>(rounds);
+    const std::uint64_t last =
+        plan.count * static_cast<std::uint64_t>(round + 1) / static_cast<std::uint64_t>(rounds);
+    // Equal blocks, as many for each thread, so that none waits for another.
+    const auto size_of_round = static_cast<std::int64_t>(last - first);
+    const std::int64_t blocks = CeilDivide(size_of_round, kBlock * plan.threads) * plan.threads;
+    const std::int64_t block_size = WholeTiles(CeilDivide(size_of_round, blocks));
     // Of each thread: seconds in each row, of the active and the idle, and how many there were.
     struct Share {
       std::vector<std::array<double, 2>> seconds;
@@ -128,8 +132,9 @@ void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<Ro
           stopped = true;
           continue;
         }
-        const std::uint64_t begin = first + static_cast<std::uint64_t>(block * kBlock);
-        const auto size = std::min<std::int64_t>(kBlock, static_cast<std::int64_t>(last - begin));
+        const std::uint64_t begin = first + static_cast<std::uint64_t>(block * block_size);
+        if (begin >= last) continue;  // fewer tiles than threads
+        const auto size = std::min(block_size, static_cast<std::int64_t>(last - begin));
         block_of_all.Draw(*plan.distribution, plan.seed, begin, WholeTiles(size));
         parts.Split(block_of_all, size);
         for (std::size_t r : Shuffled(rows.size(), plan.seed, begin)) {

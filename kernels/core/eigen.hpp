@@ -34,8 +34,7 @@ PackedSym<double, E::kDofs> FilterInFrame(const Vec<double, E::kDofs>& x,
   PackedSym<double, E::kDofs> sum{};
   const auto add = [&](const auto& term) {
     const auto modes = weights(term.modes);
-    const auto part =
-        PullBackInEigen(modes.lambda, modes.v, modes.kCount, term.map, eigenvalues);
+    const auto part = PullBackInEigen(modes.lambda, modes.v, modes.kCount, term.map, eigenvalues);
     for (int k = 0; k < part.kSize; ++k) sum.a[k] += part.a[k];
   };
   std::apply([&](const auto&... term) { (add(term), ...); }, E::FrameTerms(x, p));
