@@ -6,19 +6,11 @@
 
 #include <bit>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
-#include <limits>
 
 #include "kernels/core/lanes.hpp"
 
 namespace definite {
-
-// T's unit roundoff u.
-template <class T>
-inline constexpr double kUnitRoundoff = static_cast<double>(std::numeric_limits<T>::epsilon()) / 2;
-template <class S, int W>
-inline constexpr double kUnitRoundoff<Lanes<S, W>> = kUnitRoundoff<S>;
 
 template <class T>
 DEFINITE_INLINE T Select(bool condition, const T& yes, const T& no) {
