@@ -83,7 +83,7 @@ struct Collision {
       auto terms = std::tuple(FrameTerm<T, 9, kDofs, 3>{InFrame(f, first), {}},
                               FrameTerm<T, 9, kDofs, 3>{InFrame(f, second), {}});
       FrameMap(f, std::get<0>(terms).map);
-      Length::Remainder(x, std::get<1>(terms).map);
+      Length::Remainder(x, f.outside, std::get<1>(terms).map);
       return terms;
     } else {
       const auto modes = ModesOf<Set::kFrame, Part::kAll>(f, slopes);

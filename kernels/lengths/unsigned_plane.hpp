@@ -66,12 +66,12 @@ struct UnsignedPlane {
     return modes;
   }
 
-  // D = dc/dx - S, Eq. 20: how the frame weights change. Free of units.
+  // D = dc/dx - S, Eq. 20: how the frame weights change. Free of units; zero outside the domain.
   template <class T>
-  static void Remainder(const Vec<T, 12>& x, T (&d)[9][12]) {
-    CollisionFrame<T> f;
+  static void Remainder(const Vec<T, 12>& x, const MaskOf<T>& outside, T (&d)[9][12]) {
+    CollisionFrame<T> unit;
     Edges<T> edges = Stencil::EdgesOf(x);
-    Prescale(edges, f);
+    Prescale(edges, unit);
     const auto& [e0, e1, e2] = edges;
     const T a2 = Dot(e0, e0), al = Dot(e0, e1) / a2;
     const Vec3<T> c1 = e1 - al * e0;
@@ -86,8 +86,8 @@ struct UnsignedPlane {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 12; ++j) {
         d[i][j] = T(0.0);
-        d[3 + i][j] = -(e0[i] * al_x[j]);
-        d[6 + i][j] = -(e0[i] * be_x[j] + e1[i] * ga_x[j]);
+        d[3 + i][j] = Select(outside, T(0.0), -(e0[i] * al_x[j]));
+        d[6 + i][j] = Select(outside, T(0.0), -(e0[i] * be_x[j] + e1[i] * ga_x[j]));
       }
     }
   }
