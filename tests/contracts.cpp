@@ -195,6 +195,17 @@ double OffScalar(const Subject& s, const Configuration& c, const std::vector<dou
   return 0;
 }
 
+// What the distributions leave at its default: two of three configurations get another stiffness
+// and a side of their own.
+void VaryParameters(const EnergyRow& energy, int i, std::vector<double>& p) {
+  const double stiffness[] = {1, 3.5, 0.3}, side[] = {0, 1, -1};
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    const std::string_view name = energy.parameters[j].name;
+    if (name == "k" || name == "mu") p[j] = stiffness[i % 3];
+    if (name == "side") p[j] = side[i % 3];
+  }
+}
+
 // Vertex over a triangle: the vertex at foot point beta e0 + gamma e1 and height l.
 Configuration VertexFaceCase(std::string name, std::vector<double> e0, std::vector<double> e1,
                              double beta, double gamma, double l, double eps, double shift) {
@@ -292,6 +303,7 @@ std::vector<Configuration> Configurations(const EnergyRow& energy) {
       Configuration c{std::string(distribution.name) + " " + std::to_string(i), {}, {}, false, 1};
       c.x.assign(batch.X(i), batch.X(i) + energy.dofs);
       c.p.assign(batch.P(i), batch.P(i) + energy.parameters.size());
+      VaryParameters(energy, i, c.p);
       all.push_back(c);
     }
   }
