@@ -51,11 +51,14 @@ TEST(Figures, CountOffDiagonalEntriesTwice) {
 }
 
 TEST(Figures, CallAMatrixPsdUpToTheRatioBound) {
-  const double n = 4, slack = kRatioBound * n * kUnit;  // |F| is close to 1
-  EXPECT_TRUE(IsPsd(Diagonal({1, 0, 0, 0})));
+  const double n = 4;
+  for (double norm : {1.0, 1e-100, 1e-6, 1e6, 1e100}) {
+    const double slack = kRatioBound * n * kUnit * norm;
+    EXPECT_TRUE(IsPsd(Diagonal({norm, 0, 0, 0}))) << norm;
+    EXPECT_TRUE(IsPsd(Diagonal({norm, 0, 0, -0.9 * slack}))) << norm;
+    EXPECT_FALSE(IsPsd(Diagonal({norm, 0, 0, -1.1 * slack}))) << norm;
+  }
   EXPECT_TRUE(IsPsd(Diagonal({0, 0, 0, 0})));
-  EXPECT_TRUE(IsPsd(Diagonal({1, 0, 0, -0.9 * slack})));
-  EXPECT_FALSE(IsPsd(Diagonal({1, 0, 0, -1.1 * slack})));
   EXPECT_FALSE(IsPsd(Diagonal({-1, 0, 0, 0})));
   EXPECT_FALSE(IsPsd(Diagonal({1, std::nan(""), 0, 0})));
   EXPECT_FALSE(IsPsd(Diagonal({1, std::numeric_limits<double>::infinity(), 0, 0})));
@@ -77,8 +80,8 @@ TEST(Tiles, ComeBackAsTheyWere) {
   std::vector<double> numbers(3 * 16), tiled(3 * 16), back(3 * 16);
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i);
   ToTiles(numbers.data(), 3, 16, tiled.data());
-  EXPECT_EQ(tiled[1], 3);   // number 0 of configuration 1
-  EXPECT_EQ(tiled[8], 1);   // number 1 of configuration 0
+  EXPECT_EQ(tiled[1], 3);    // number 0 of configuration 1
+  EXPECT_EQ(tiled[8], 1);    // number 1 of configuration 0
   EXPECT_EQ(tiled[24], 24);  // the second tile
   FromTiles(tiled.data(), 3, 16, back.data());
   EXPECT_EQ(back, numbers);
@@ -87,8 +90,11 @@ TEST(Tiles, ComeBackAsTheyWere) {
 // Judges one output at one configuration, in place of what the row gives.
 class Judge : public ::testing::Test {
  protected:
-  Judge() : batch_(*Row("none/f64").energy) {
-    batch_.Draw(*FindDistribution("active"), 1, 0, kTile);
+  Judge() {
+    Batch batch(*Row("none/f64").energy);
+    batch.Draw(*FindDistribution("active"), 1, 0, kTile);
+    x_.assign(batch.X(0), batch.X(0) + 12);
+    p_.assign(batch.P(0), batch.P(0) + 3);
   }
 
   RowFigures Of(const std::string& filter, const std::vector<double>& output,
@@ -97,16 +103,24 @@ class Judge : public ::testing::Test {
     Examiner examiner(*rows[0]->energy, rows);
     const Packed outputs[] = {output};
     const std::vector<double> h = Exact("none/f64"), nearest = Exact("numeric/f64");
-    examiner.Examine(batch_.X(0), batch_.P(0), h, nearest, outputs, depth);
+    examiner.Examine(x_.data(), p_.data(), h, nearest, outputs, depth);
     return examiner.Row(0);
   }
   std::vector<double> Exact(const std::string& filter) {
     std::vector<double> out(78);
-    RunOne(Row(filter), batch_.X(0), batch_.P(0), out.data());
+    RunOne(Row(filter), x_.data(), p_.data(), out.data());
     return out;
   }
+  std::vector<double> Scaled(const std::string& filter, double scale) {
+    std::vector<double> out = Exact(filter);
+    for (double& a : out) a *= scale;
+    return out;
+  }
+  double Conditioning() const {
+    return reference::FindEnergy<double>(kEnergy)->conditioning(x_.data(), p_.data());
+  }
 
-  Batch batch_;
+  std::vector<double> x_, p_;
 };
 
 TEST_F(Judge, PassesWhatIsRight) {
@@ -115,6 +129,9 @@ TEST_F(Judge, PassesWhatIsRight) {
   EXPECT_TRUE(f.broken.empty());
   EXPECT_TRUE(f.defined);
   EXPECT_LT(*f.rounding, 2);
+  EXPECT_FALSE(*f.flip);
+  EXPECT_LT(*f.psd_defect, 2);
+  EXPECT_LT(*f.majorises, 12 * kUnit);
   EXPECT_GT(*f.distance, 1e-4);
   EXPECT_GT(*f.excess, 1);
   EXPECT_GT(*f.relabelling, 1e-4);
@@ -149,27 +166,49 @@ TEST_F(Judge, CallsTheHessianNonPsdWithoutABrokenPromise) {
 }
 
 TEST_F(Judge, CallsWhatIsOffItsDefinitionDegraded) {
-  std::vector<double> f = Exact("analytic/f64");
-  for (double& a : f) a *= 1 + 1e-9;
   for (Depth depth : {Depth::kDefinition, Depth::kSpectral, Depth::kTruth}) {
-    const RowFigures figures = Of("analytic/f64", f, depth);
+    const RowFigures figures = Of("analytic/f64", Scaled("analytic/f64", 1 + 1e-9), depth);
     EXPECT_EQ(figures.verdict, Verdict::kDegraded);
     EXPECT_EQ(figures.broken, std::vector{Property::kAccurate});
     EXPECT_NEAR(*figures.rounding * 12 * kUnit, 1e-9, 1e-12);
   }
-  EXPECT_EQ(Of("analytic/f64", f, Depth::kCheap).verdict, Verdict::kPass);
+  EXPECT_EQ(Of("analytic/f64", Scaled("analytic/f64", 1 + 1e-9), Depth::kCheap).verdict,
+            Verdict::kPass);
+  const double threshold = 1e-10 / Conditioning();  // docs/protocol.md, section 1
+  for (const auto& [share, verdict] : {std::pair(0.9, Verdict::kPass), {1.1, Verdict::kDegraded}}) {
+    EXPECT_EQ(Of("analytic/f64", Scaled("analytic/f64", 1 + share * threshold)).verdict, verdict);
+  }
 }
 
-TEST_F(Judge, CallsGrowthDegraded) {
-  std::vector<double> f = Exact("analytic/f64");
-  for (double& a : f) a *= 100;
-  EXPECT_EQ(Of("analytic/f64", f, Depth::kCheap).verdict, Verdict::kDegraded);
+// In a thin triangle a rounding of x does what 1e-10 of the result amounts to.
+TEST_F(Judge, HoldsAThinTriangleToTheBoundThatItsAngleAllows) {
+  const auto spoilt = [&] { return Of("analytic/f64", Scaled("analytic/f64", 1 - 1e-10)); };
+  EXPECT_NE(spoilt().broken, std::vector<Property>());
+  x_ = {0.3, 0.2e-4, 0.05, 1, 0, 0, 0, 0, 0, 0.5, 1e-4, 0};
+  const RowFigures f = spoilt();
+  EXPECT_NEAR(Conditioning(), 2e-4, 1e-8);
+  EXPECT_NEAR(*f.rounding * 12 * kUnit, 1e-10, 1e-12);
+  EXPECT_DOUBLE_EQ(*f.conditioned_rounding, *f.rounding * Conditioning());
+  EXPECT_GT(*f.majorises, 0);
+  EXPECT_EQ(f.broken, std::vector<Property>());
+  EXPECT_EQ(f.verdict, Verdict::kPass);
+}
+
+TEST_F(Judge, CallsAModeThatIsMissingAFlip) {
+  EXPECT_TRUE(*Of("analytic/f64", Exact("gauss_newton/f64")).flip);
+}
+
+TEST_F(Judge, CallsGrowthBeyondFourTimesTheHessianDegraded) {
+  const double norm = FrobeniusNorm(Exact("none/f64")) / FrobeniusNorm(Exact("analytic/f64"));
+  for (const auto& [growth, verdict] :
+       {std::pair(3.9, Verdict::kPass), {4.1, Verdict::kDegraded}}) {
+    EXPECT_EQ(Of("analytic/f64", Scaled("analytic/f64", growth * norm), Depth::kCheap).verdict,
+              verdict);
+  }
 }
 
 TEST_F(Judge, SeesALossOfMajorisation) {
-  std::vector<double> f = Exact("analytic/f64");
-  for (double& a : f) a *= 0.5;
-  const RowFigures figures = Of("analytic/f64", f, Depth::kSpectral);
+  const RowFigures figures = Of("analytic/f64", Scaled("analytic/f64", 0.5), Depth::kSpectral);
   EXPECT_GT(*figures.majorises, 0.01);
   EXPECT_NE(std::ranges::find(figures.broken, Property::kMajorises), figures.broken.end());
 }
@@ -181,7 +220,7 @@ TEST_F(Judge, CallsAWrongGradientInconsistent) {
   };
   const KernelRow* const rows[] = {&Row("analytic/f64")};
   Examiner examiner(energy, rows);
-  examiner.Examine(batch_.X(0), batch_.P(0), Depth::kTruth);
+  examiner.Examine(x_.data(), p_.data(), Depth::kTruth);
   EXPECT_EQ(examiner.Row(0).verdict, Verdict::kInconsistent);
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/multiprecision/float128.hpp>
 #include <cmath>
 #include <limits>
@@ -63,14 +64,12 @@ void ForDrawn(const std::string& distribution, int count, Check check) {
 }
 
 // The formulas are those of the reference: in float128 only rounding is left, about 1e-34 / sin^2.
-template <class F>
+template <class F, class E = SignedVertexFace>
 void ExpectDefined(const std::string& distribution) {
   const auto* definition = reference::FindFilter<Quad>(F::kName);
   int checked = 0;
-  ForDrawn<SignedVertexFace>(distribution, 40, [&](const auto& x, const auto& p, auto& truth) {
-    EXPECT_LT(RelativeError(ToPacked(F::template Apply<SignedVertexFace>(x, p)),
-                            definition->define(truth)),
-              1e-28)
+  ForDrawn<E>(distribution, 40, [&](const auto& x, const auto& p, auto& truth) {
+    EXPECT_LT(RelativeError(ToPacked(F::template Apply<E>(x, p)), definition->define(truth)), 1e-28)
         << F::kName;
     ++checked;
   });
@@ -223,6 +222,22 @@ void ExpectConsistent(const std::vector<double>& x0, const std::vector<double>& 
   }
 }
 
+// Unlike those of a penalty of a length, the modes that the clamp is given may be negative.
+TEST(StrandBend, IsClampedInTheFrameInFloat128) {
+  ExpectDefined<Analytic, StrandBend>("normal");
+  int negative = 0;
+  ForDrawn<StrandBend>("normal", 40, [&](const auto& x, const auto& p, auto&) {
+    const auto modes = StrandBend::HessianModes<Set::kFrame, Part::kPositive>(x, p);
+    negative += std::ranges::any_of(modes.lambda, [](const Quad& v) { return v < 0; });
+  });
+  EXPECT_EQ(negative, 40);
+}
+
+TEST(StrandBend, HasTheReferencesHessianAndCurvatureInFloat128) {
+  ExpectDefined<None, StrandBend>("normal");
+  ExpectDefined<GaussNewton, StrandBend>("normal");
+}
+
 TEST(Interface, HoldsAStrandBendingEnergy) {
   static_assert(EnergyOver<StrandBend, double>);
   static_assert(EnergyOver<StrandBend, Lanes<double, kNativeLanes>>);
@@ -276,7 +291,8 @@ TEST(Lanes, ComputeWhatScalarsDo) {
   expect(MulAdd(x, y, x), [](double p, double q) { return std::fma(p, q, p); });
   expect(Max(x, y), [](double p, double q) { return p > q ? p : q; });
   expect(Select(x < y, x, y), [](double p, double q) { return p < q ? p : q; });
-  expect(Select((x <= y) | (y > x), x, y), [](double p, double q) { return p <= q ? p : q; });
+  expect(Select((x <= y) | (x > L(0.0)), x, y),
+         [](double p, double q) { return p <= q || p > 0 ? p : q; });
   expect(Select(x >= y, x, y), [](double p, double q) { return p >= q ? p : q; });
 }
 
