@@ -30,9 +30,6 @@ const std::array<PublishedRow, 5> kTable1 = {{
     {"edge-edge hybrid", "collision/edge_edge/hybrid/quadratic", 85.16, 13.52, 12.29},
 }};
 
-// The exact Hessian of the clamped distance, which the paper does not have.
-const std::string kEnvelope = "collision/edge_edge/unsigned/quadratic";
-
 // The filters of the tables: row name after the energy, and how it reads.
 const std::vector<std::pair<std::string, std::string>> kFilters = {
     {"numeric/f64", "numeric 12x12"},
@@ -43,6 +40,16 @@ const std::vector<std::pair<std::string, std::string>> kFilters = {
     {"gauss_newton_frame/f64", "G-N, through the frame"},
     {"gauss_newton/f64", "G-N, outer product"},
     {"gauss_newton/f64x8", "G-N, 8 lanes"},
+};
+
+// The exact Hessian of the clamped distance, which the paper does not have: its table shows only
+// how it differs.
+const std::string kEnvelope = "collision/edge_edge/unsigned/quadratic";
+const std::vector<std::pair<std::string, std::string>> kEnvelopeFilters = {
+    {"numeric/f64", "numeric 12x12"},
+    {"analytic/f64", "analytic, stable"},
+    {"analytic/f64x8", "analytic, 8 lanes"},
+    {"gauss_newton/f64", "G-N, outer product"},
 };
 
 const Json& RowOf(const Json& result, const std::string& energy, const std::string& filter) {
@@ -321,7 +328,7 @@ std::string Accuracy(const Json& result) {
   for (const auto& [label, energy] : energies) {
     std::vector<std::vector<std::string>> table = {
         {"filter", "ns", "median", "p99", "max", "excess", "defect", "relabel."}};
-    for (const auto& [filter, name] : kFilters) {
+    for (const auto& [filter, name] : energy == kEnvelope ? kEnvelopeFilters : kFilters) {
       const Json& row = RowOf(result, energy, filter);
       const auto excess = Entry(row, "excess", "median");
       table.push_back({name, Show(NsOf(row), "{:.1f}"),
@@ -378,7 +385,9 @@ std::vector<std::string> ShiKim2023::Rows() {
   for (const PublishedRow& published : kTable1) {
     for (const auto& [filter, label] : kFilters) rows.push_back(published.energy + "/" + filter);
   }
-  for (const auto& [filter, label] : kFilters) rows.push_back(kEnvelope + "/" + filter);
+  for (const auto& [filter, label] : kEnvelopeFilters) {
+    rows.push_back(kEnvelope + "/" + filter);
+  }
   return rows;
 }
 
