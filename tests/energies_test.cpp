@@ -73,7 +73,6 @@ double Norm(const reference::Matrix<Quad>& m) {
   return static_cast<double>(reference::FrobeniusNorm(m));
 }
 
-// All the rows of an energy. The printed formulas have no domain.
 std::vector<const KernelRow*> RowsOf(const EnergyRow& energy) {
   std::vector<const KernelRow*> rows;
   for (const KernelRow& row : AllKernels()) {
@@ -87,6 +86,7 @@ void ExpectNothing(const EnergyRow& energy, const Numbers& x, const Numbers& p) 
   EXPECT_EQ(Value(energy, x, p), 0);
   EXPECT_TRUE(AllZero(Gradient(energy, x, p)));
   for (const KernelRow* row : RowsOf(energy)) {
+    // The printed formulas have no domain.
     if (row->filter == "analytic_printed" && !Classify(energy, x, p).in_domain) continue;
     EXPECT_TRUE(AllZero(Outputs(*row, x, p))) << row->name;
   }
@@ -222,7 +222,7 @@ TEST_P(EveryEnergy, IsZeroOutsideItsDomain) {
   EXPECT_GE(outside, 3);
 }
 
-// Gauss-Newton's matrix is the same for all of these.
+// Where an energy acts, Gauss-Newton's matrix is the same for every eps and omega0.
 bool Reads(const KernelRow& row, std::string_view parameter) {
   return !(row.filter.starts_with("gauss_newton") && (parameter == "eps" || parameter == "omega0"));
 }
