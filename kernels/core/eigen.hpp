@@ -1,29 +1,37 @@
 #pragma once
 
-// What the numeric and frame filters ask of Eigen. The library itself stays in eigen.cpp: its
-// templates took 20 of the 25 s that one energy's rows took to build.
+// What the numeric and frame filters ask of Eigen. The library itself stays in eigen_solver.cpp:
+// its templates took 20 of the 25 s that one energy's rows took to build.
 
 #include <tuple>
 
+#include "kernels/core/eigen_solver.hpp"
 #include "kernels/kernel.hpp"
 
 namespace definite {
 
-// What becomes of an eigenvalue. A NaN stays one.
-using EigenvalueMap = double (*)(double lambda);
-inline double ClampToPsd(double lambda) { return lambda < 0 ? 0 : lambda; }
+inline double ClampToPsd(double lambda) { return lambda < 0 ? 0 : lambda; }  // NaN stays NaN
 
 // sum map(lambda) v v^T over the eigenpairs of h; NaN where the solver does not converge.
 // N: 6, 9, 12.
 template <int N>
-PackedSym<double, N> MapEigenvalues(const PackedSym<double, N>& h, EigenvalueMap map);
+PackedSym<double, N> MapEigenvalues(const PackedSym<double, N>& h, EigenvalueMap map) {
+  PackedSym<double, N> result;
+  internal::MapEigenvalues<N>(h.a, map, result.a);
+  return result;
+}
 
 // map^T (sum_m lambda[m] v[m] v[m]^T) map, one outer product after the other and then the products
 // of the reduced frame, as one writes them in Eigen. Where `eigenvalues` is given, the eigenvalues
 // of the sum are mapped first. F x D: 9 x 12.
 template <int F, int D>
 PackedSym<double, D> PullBackInEigen(const double* lambda, const Vec<double, F>* v, int count,
-                                     const double (&map)[F][D], EigenvalueMap eigenvalues);
+                                     const double (&map)[F][D], EigenvalueMap eigenvalues) {
+  static_assert(sizeof(Vec<double, F>) == F * sizeof(double));
+  PackedSym<double, D> result;
+  internal::PullBack<F, D>(lambda, v->v, count, map[0], eigenvalues, result.a);
+  return result;
+}
 
 // The same of an energy's frame terms, added up. `weights` turns the modes of a term into those
 // that count.

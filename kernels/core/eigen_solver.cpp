@@ -1,0 +1,63 @@
+#include <Eigen/Dense>
+#include <limits>
+
+#include "kernels/core/eigen_solver.hpp"
+
+namespace definite {
+
+namespace {
+
+template <int N>
+using EigenMatrix = Eigen::Matrix<double, N, N>;
+
+template <int N>
+EigenMatrix<N> MapEigenvaluesOf(const EigenMatrix<N>& h, EigenvalueMap map) {
+  const Eigen::SelfAdjointEigenSolver<EigenMatrix<N>> solver(h);  // reads the lower triangle
+  if (solver.info() != Eigen::Success) {
+    return EigenMatrix<N>::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+  const EigenMatrix<N>& v = solver.eigenvectors();
+  return v * solver.eigenvalues().unaryExpr(map).asDiagonal() * v.transpose();
+}
+
+template <int N>
+void Pack(const EigenMatrix<N>& full, double* packed) {
+  for (int i = 0; i < N; ++i) {
+    for (int j = i; j < N; ++j) *packed++ = full(j, i);
+  }
+}
+
+}  // namespace
+
+namespace internal {
+
+template <int N>
+void MapEigenvalues(const double* h, EigenvalueMap map, double* result) {
+  EigenMatrix<N> full;
+  for (int i = 0; i < N; ++i) {
+    for (int j = i; j < N; ++j) full(j, i) = *h++;
+  }
+  Pack(MapEigenvaluesOf(full, map), result);
+}
+
+template <int F, int D>
+void PullBack(const double* lambda, const double* modes, int count, const double* map,
+              EigenvalueMap eigenvalues, double* result) {
+  EigenMatrix<F> h = EigenMatrix<F>::Zero();
+  for (int m = 0; m < count; ++m) {
+    const Eigen::Map<const Eigen::Matrix<double, F, 1>> mode(modes + m * F);
+    h.noalias() += lambda[m] * mode * mode.transpose();
+  }
+  if (eigenvalues) h = MapEigenvaluesOf(h, eigenvalues);
+  const Eigen::Map<const Eigen::Matrix<double, F, D, Eigen::RowMajor>> s(map);
+  Pack(EigenMatrix<D>(s.transpose() * h * s), result);
+}
+
+template void MapEigenvalues<6>(const double*, EigenvalueMap, double*);
+template void MapEigenvalues<9>(const double*, EigenvalueMap, double*);
+template void MapEigenvalues<12>(const double*, EigenvalueMap, double*);
+template void PullBack<9, 12>(const double*, const double*, int, const double*, EigenvalueMap,
+                              double*);
+
+}  // namespace internal
+}  // namespace definite

@@ -1,0 +1,22 @@
+#pragma once
+
+// What eigen_solver.cpp offers, on plain numbers: it includes nothing else of ours, since Eigen takes half
+// a minute to compile. eigen.hpp has the form that filters use.
+
+namespace definite {
+
+// What becomes of an eigenvalue. A NaN stays one.
+using EigenvalueMap = double (*)(double lambda);
+
+namespace internal {
+
+// Packed upper triangles row by row; the modes are `count` vectors of F numbers, the map is F x D
+// row by row.
+template <int N>
+void MapEigenvalues(const double* h, EigenvalueMap map, double* result);
+template <int F, int D>
+void PullBack(const double* lambda, const double* modes, int count, const double* map,
+              EigenvalueMap eigenvalues, double* result);
+
+}  // namespace internal
+}  // namespace definite
