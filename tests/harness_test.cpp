@@ -290,10 +290,12 @@ TEST(CheckedPass, LooksDeeperAtSamples) {
 TEST(TimedPass, TimesEveryRowInEveryRound) {
   SweepPlan plan = Plan(20'000, 2);
   plan.timing = true;
-  EnergyResult energy{plan.rows[0]->energy, {}, {}};
+  EnergyResult energy{plan.rows[0]->energy, {}, {}, 0, 0};
   for (const KernelRow* row : plan.rows) energy.rows.push_back({row, {}, {}, {}});
   Progress progress(false);
-  RunTimedPass(plan, *energy.energy, energy.rows, progress);
+  RunTimedPass(plan, energy, progress);
+  EXPECT_GT(energy.timed_cpu, 0);
+  EXPECT_GT(energy.timed_wall, 0);
   for (const RowResult& r : energy.rows) {
     for (const std::vector<double>& rounds : {r.timing.all, r.timing.active}) {
       EXPECT_EQ(rounds.size(), static_cast<std::size_t>(TimedRounds(plan.count)));

@@ -4,7 +4,6 @@
 #include <sys/utsname.h>
 
 #include <Eigen/Core>
-#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -26,19 +25,17 @@ std::string CpuName() {
 
 }  // namespace
 
-nlohmann::ordered_json DescribeMachine() {
+nlohmann::ordered_json DescribeMachine(const std::optional<double>& load, bool noisy) {
   const std::string cpu = CpuName();
   const unsigned cores = std::thread::hardware_concurrency();
   utsname system{};
   uname(&system);
-  double load = 0;
-  const bool has_load = getloadavg(&load, 1) == 1;
   nlohmann::ordered_json machine;
   machine["cpu"] = cpu.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(cpu);
   machine["cores"] = cores;
   machine["os"] = std::string(system.sysname) + " " + system.release + " " + system.machine;
-  machine["load_average"] = has_load ? nlohmann::ordered_json(load) : nlohmann::ordered_json();
-  machine["noisy"] = has_load && load > cores;
+  machine["load_average"] = load ? nlohmann::ordered_json(*load) : nlohmann::ordered_json();
+  machine["noisy"] = noisy;
   return machine;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "benchmarks/harness/batch.hpp"
@@ -165,6 +166,13 @@ Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowR
   return row;
 }
 
+// More processes wanted to run than there were cores: a twentieth of the timed pass went to others.
+bool IsNoisy(const SweepResult& result) {
+  return std::ranges::any_of(result.energies, [](const EnergyResult& energy) {
+    return energy.timed_cpu < 0.95 * energy.timed_wall;
+  });
+}
+
 std::string Short(const Figure& figure, double Figure::Summary::*value) {
   const auto summary = figure.Summarize();
   return summary ? fmt::format("{:.1e}", (*summary).*value) : "-";
@@ -207,7 +215,7 @@ Json ToJson(const SweepResult& result, const std::vector<std::string>& command, 
   json["schema"] = "definite/1";
   json["protocol"] = ProtocolHash();
   json["command"] = command;
-  json["machine"] = DescribeMachine();
+  json["machine"] = DescribeMachine(result.load_before, IsNoisy(result));
   json["build"] = DescribeBuild();
   json["seed"] = result.plan.seed;
   json["partial"] = result.partial;

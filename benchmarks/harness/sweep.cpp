@@ -1,6 +1,7 @@
 #include "benchmarks/harness/sweep.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "benchmarks/harness/checked_pass.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
@@ -91,10 +92,11 @@ Depth DepthOf(std::uint64_t index, std::uint64_t count) {
 SweepResult RunSweep(const SweepPlan& plan, Progress& progress) {
   SweepResult result;
   result.plan = plan;
+  if (double load; getloadavg(&load, 1) == 1) result.load_before = load;
   for (const KernelRow* row : plan.rows) {
     auto at = std::ranges::find(result.energies, row->energy, &EnergyResult::energy);
     if (at == result.energies.end()) {
-      result.energies.push_back({row->energy, {}, {}});
+      result.energies.push_back({row->energy, {}, {}, 0, 0});
       at = result.energies.end() - 1;
     }
     at->rows.push_back({row, {}, {}, {}});
@@ -102,9 +104,7 @@ SweepResult RunSweep(const SweepPlan& plan, Progress& progress) {
   const std::uint64_t total = plan.count * result.energies.size();
   if (plan.timing) {
     progress.Start("timed pass", total);
-    for (EnergyResult& energy : result.energies) {
-      RunTimedPass(plan, *energy.energy, energy.rows, progress);
-    }
+    for (EnergyResult& energy : result.energies) RunTimedPass(plan, energy, progress);
   }
   progress.Start("checked pass", total);
   for (EnergyResult& energy : result.energies) {

@@ -69,11 +69,15 @@ struct EnergyResult {
   const EnergyRow* energy;
   EnergyStatistics statistics;
   std::vector<RowResult> rows;
+  // Of the timed pass, over all threads: with less processor time than wall time, other work had
+  // its share of the machine.
+  double timed_cpu = 0, timed_wall = 0;
 };
 
 struct SweepResult {
   SweepPlan plan;
   std::vector<EnergyResult> energies;
+  std::optional<double> load_before;  // load average of one minute
   bool partial = false;
 };
 

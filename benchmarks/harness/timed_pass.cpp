@@ -92,8 +92,9 @@ int TimedRounds(std::uint64_t count) {
   return static_cast<int>(std::clamp<std::uint64_t>(count / 512, 1, kMaxRounds));
 }
 
-void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<RowResult>& rows,
-                  Progress& progress) {
+void RunTimedPass(const SweepPlan& plan, EnergyResult& result, Progress& progress) {
+  const EnergyRow& energy = *result.energy;
+  std::vector<RowResult>& rows = result.rows;
   const int rounds = TimedRounds(plan.count);
   const auto threads = static_cast<std::size_t>(plan.threads);
   for (int round = 0; round < rounds; ++round) {
@@ -109,8 +110,9 @@ void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<Ro
     struct Share {
       std::vector<std::array<double, 2>> seconds;
       std::array<std::int64_t, 2> counts{};
+      double cpu = 0, wall = 0;
     };
-    std::vector<Share> shares(threads, {std::vector<std::array<double, 2>>(rows.size()), {}});
+    std::vector<Share> shares(threads, {std::vector<std::array<double, 2>>(rows.size()), {}, 0, 0});
     bool stopped = false;
 #pragma omp parallel num_threads(plan.threads)
     {
@@ -135,6 +137,8 @@ void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<Ro
         const std::uint64_t begin = first + static_cast<std::uint64_t>(block * block_size);
         if (begin >= last) continue;  // fewer tiles than threads
         const auto size = std::min(block_size, static_cast<std::int64_t>(last - begin));
+        mine.cpu -= ThreadSeconds();
+        mine.wall -= WallSeconds();
         block_of_all.Draw(*plan.distribution, plan.seed, begin, WholeTiles(size));
         parts.Split(block_of_all, size);
         for (std::size_t r : Shuffled(rows.size(), plan.seed, begin)) {
@@ -145,6 +149,8 @@ void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<Ro
         for (std::size_t part : {Parts::kActive, Parts::kIdle}) {
           mine.counts[part] += parts.Count(part);
         }
+        mine.cpu += ThreadSeconds();
+        mine.wall += WallSeconds();
         progress.Advance(static_cast<std::uint64_t>(size));
       }
     }
@@ -153,6 +159,8 @@ void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<Ro
     for (const Share& share : shares) {
       active += share.counts[Parts::kActive];
       all += share.counts[Parts::kActive] + share.counts[Parts::kIdle];
+      result.timed_cpu += share.cpu;
+      result.timed_wall += share.wall;
     }
     for (std::size_t r = 0; r < rows.size(); ++r) {
       // The threads run side by side: the last one to finish counts.

@@ -12,7 +12,6 @@ int TimedRounds(std::uint64_t count);
 
 // Times the rows of one energy, all interleaved in random order over the same configurations, and
 // appends a time for each round to each row. An interrupted round is dropped.
-void RunTimedPass(const SweepPlan& plan, const EnergyRow& energy, std::vector<RowResult>& rows,
-                  Progress& progress);
+void RunTimedPass(const SweepPlan& plan, EnergyResult& result, Progress& progress);
 
 }  // namespace definite
