@@ -287,6 +287,23 @@ TEST(CheckedPass, LooksDeeperAtSamples) {
   EXPECT_EQ(DepthOf(1, 50), Depth::kDefinition);
 }
 
+TEST(Batch, TakesSomeConfigurationsAndFillsTheLastTileWithTheLast) {
+  const EnergyRow& energy = AllEnergies()[0];
+  Batch all(energy), some(energy);
+  all.Draw(*FindDistribution("paper"), 3, 0, 16);
+  const std::int64_t indices[] = {2, 3, 5, 7, 11, 13, 1, 8, 15};
+  some.Take(all, indices);
+  ASSERT_EQ(some.Size(), 16);
+  for (std::int64_t i = 0; i < some.Size(); ++i) {
+    const std::int64_t source = indices[std::min<std::int64_t>(i, 8)];
+    for (int k = 0; k < energy.dofs; ++k) {
+      EXPECT_EQ(some.X(i)[k], all.X(source)[k]);
+      EXPECT_EQ(some.TilesX(8, i / 8 * 8)[k * 8 + i % 8], all.X(source)[k]);
+    }
+    EXPECT_EQ(some.P(i)[1], all.P(source)[1]);
+  }
+}
+
 TEST(TimedPass, TimesEveryRowInEveryRound) {
   SweepPlan plan = Plan(20'000, 2);
   plan.timing = true;
