@@ -331,7 +331,8 @@ std::string Accuracy(const Json& result) {
     for (const auto& [filter, name] : energy == kEnvelope ? kEnvelopeFilters : kFilters) {
       const Json& row = RowOf(result, energy, filter);
       const auto excess = Entry(row, "excess", "median");
-      table.push_back({name, Show(NsOf(row), "{:.1f}"),
+      const auto ns = NsOf(row);
+      table.push_back({name, Show(ns, ns && ns->median < 100 ? "{:.1f}" : "{:.0f}"),
                        Show(Entry(row, "distance", "median"), "{:.1e}"),
                        Show(Entry(row, "distance", "p99"), "{:.1e}"),
                        Show(Entry(row, "distance", "max"), "{:.1e}"),
