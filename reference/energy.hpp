@@ -3,6 +3,7 @@
 #include <array>
 #include <concepts>
 #include <string>
+#include <vector>
 
 #include "reference/dual.hpp"
 #include "reference/matrix.hpp"
@@ -16,13 +17,11 @@ struct Derivatives {
   Matrix<T> hessian;   // dofs x dofs
 };
 
+// A term map^T hessian map of psi's Hessian, in the frame coordinates c.
 template <class T>
-struct Frame {
-  Matrix<T> hessian;  // of psi in the frame coordinates c: frame_dofs x frame_dofs
-  Matrix<T> map;      // S, c = S x with its weights frozen at x: frame_dofs x dofs
-  // D = dc/dx - S, where psi's Hessian is S^T Hc S - D^T Hc D (Shi & Kim 2023, Eq. 17); empty where
-  // it is S^T Hc S.
-  Matrix<T> remainder;
+struct FrameTerm {
+  Matrix<T> hessian;  // frame_dofs x frame_dofs
+  Matrix<T> map;      // frame_dofs x dofs
 };
 
 // One energy psi(x; p), by name. x has `dofs` entries, p has `params`; units are the caller's. Ask
@@ -35,8 +34,7 @@ struct Energy {
   std::string name;
   int dofs;
   int params;
-  int frame_dofs;      // 0: no frame
-  bool has_remainder;  // whether the frame has one
+  int frame_dofs;  // 0: no frame
   bool (*in_domain)(const T* x, const T* p);
   bool (*active)(const T* x, const T* p);
   // At most 1: what bounds on rounding are divided by (docs/protocol.md, section 1).
@@ -45,15 +43,18 @@ struct Energy {
   Derivatives<T> (*derivatives)(const T* x, const T* p);
   T (*length)(const T* x, const T* p);             // s, where psi is a penalty of a scalar s(x)
   Matrix<T> (*curvature)(const T* x, const T* p);  // psi''(s) grad s grad s^T, dofs x dofs
-  Frame<T> (*frame)(const T* x, const T* p);
+  // The terms that sum to the Hessian; the first one's map is S, c = S x with weights frozen at x.
+  std::vector<FrameTerm<T>> (*frame)(const T* x, const T* p);
 };
 
 // What an energy must define, in plain form, for any scalar S (T itself or dual numbers over it).
 // Optional:
 //   Length(x, p) and Penalty(s, p) with psi = Penalty(Length);
 //   kFrameDofs; FrameAt(x, at, p), the frame coordinates c of x with their weights frozen at `at`
-//   (T); FrameValue(c, at, p), psi of them, such that psi(x) = FrameValue(FrameAt(x, x), x);
-//   FreeFrame(x, p), the coordinates with weights that follow x, if the frame has a remainder.
+//   (T); FrameValue(c, at, p), psi of them, of which the Hessian loses nothing by frozen weights;
+//   RemainderValue(c, at, p), the part of psi that loses something, a minimum over the weights, and
+//   FreeFrame(x, p), the coordinates with weights that follow x. With S and S + D the Jacobians of
+//   FrameAt and FreeFrame, the part's Hessian is S^T Hc S - D^T Hc D (Shi & Kim 2023, Eq. 17).
 template <class E>
 concept EnergyDefinition = requires(const Dual2<double, E::kDofs>* x, const double* p) {
   { E::Name() } -> std::same_as<std::string>;
@@ -111,17 +112,20 @@ Energy<T> MakeEnergy() {
   }
   if constexpr (requires { E::kFrameDofs; }) {
     row.frame_dofs = E::kFrameDofs;
-    constexpr bool kHasRemainder = requires(const T* x) { E::FreeFrame(x, x); };
-    row.has_remainder = kHasRemainder;
+    constexpr bool kHasRemainder = requires(const T* x) { E::RemainderValue(x, x, x); };
     row.frame = [](const T* x, const T* p) {
       const auto variables = Variables<E::kDofs>(x);
-      const auto c = E::FrameAt(variables.data(), x, p);
-      const auto values = Values<E::kFrameDofs>(c.data());
-      const auto psi = E::FrameValue(Variables<E::kFrameDofs>(values.data()).data(), x, p);
-      Frame<T> frame{Unpack(psi).hessian, Jacobian(c), {}};
-      if constexpr (kHasRemainder)
-        frame.remainder = Jacobian(E::FreeFrame(variables.data(), p)) - frame.map;
-      return frame;
+      const auto frozen = E::FrameAt(variables.data(), x, p);
+      const auto values = Values<E::kFrameDofs>(frozen.data());
+      const auto c = Variables<E::kFrameDofs>(values.data());
+      const Matrix<T> map = Jacobian(frozen);
+      std::vector<FrameTerm<T>> terms{{Unpack(E::FrameValue(c.data(), x, p)).hessian, map}};
+      if constexpr (kHasRemainder) {
+        const Matrix<T> hessian = Unpack(E::RemainderValue(c.data(), x, p)).hessian;
+        terms.push_back({hessian, map});
+        terms.push_back({-hessian, Jacobian(E::FreeFrame(variables.data(), p)) - map});
+      }
+      return terms;
     };
   }
   return row;

@@ -4,16 +4,13 @@
 
 namespace definite::reference {
 
-// Maps by f the eigenvalues of each of the terms that make up the Hessian, S^T Hc S and
-// D^T (-Hc) D.
+// Maps by f the eigenvalues of each of the terms that sum to the Hessian.
 template <class T, class F>
 Matrix<T> FilterInFrame(Truth<T>& truth, F f) {
-  const Spectrum<T>& spectrum = truth.FrameSpectrum();
-  const Matrix<T> main = Congruence(MapSpectrum(spectrum, f), truth.FrameMap());
-  const Matrix<T>& remainder = truth.FrameRemainder();
-  if (remainder.entries.empty()) return main;
-  const auto f_of_opposite = [&f](const T& lambda) { return f(-lambda); };
-  return main + Congruence(MapSpectrum(spectrum, f_of_opposite), remainder);
+  Matrix<T> sum(truth.Of().dofs, truth.Of().dofs);
+  for (size_t i = 0; i < truth.FrameTerms().size(); ++i)
+    sum = sum + Congruence(MapSpectrum(truth.FrameSpectra()[i], f), truth.FrameTerms()[i].map);
+  return sum;
 }
 
 }  // namespace definite::reference

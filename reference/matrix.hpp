@@ -46,6 +46,11 @@ Matrix<T> operator-(Matrix<T> a, const Matrix<T>& b) {
 }
 
 template <class T>
+Matrix<T> operator-(const Matrix<T>& a) {
+  return Matrix<T>(a.rows, a.cols) - a;
+}
+
+template <class T>
 Matrix<T> Transpose(const Matrix<T>& a) {
   Matrix<T> t(a.cols, a.rows);
   for (int i = 0; i < a.rows; ++i)

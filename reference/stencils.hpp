@@ -41,6 +41,29 @@ struct EdgeEdge {
   }
 };
 
+// The vertex x0 and the edge x1, x2: e0 is the edge, e2 = x0 - x1; there is no e1.
+struct VertexEdge {
+  static std::string Name() { return "collision/vertex_edge"; }
+  static constexpr int kDofs = 9;
+
+  template <class S>
+  static Edges<S> EdgesOf(const S* x) {
+    const Vec3<S> x0 = Block(x, 0), x1 = Block(x, 1), x2 = Block(x, 2);
+    return {x2 - x1, {}, x0 - x1};
+  }
+};
+
+// Two vertices: e2 = x1 - x0; there is no e0, no e1.
+struct VertexVertex {
+  static std::string Name() { return "collision/vertex_vertex"; }
+  static constexpr int kDofs = 6;
+
+  template <class S>
+  static Edges<S> EdgesOf(const S* x) {
+    return {{}, {}, Block(x, 1) - Block(x, 0)};
+  }
+};
+
 // The edges of x, its values alone.
 template <class Stencil, class S>
 auto PlainEdgesOf(const S* x) {
@@ -71,12 +94,13 @@ double SineOfEdges(const Edges<S>& e) {
   return static_cast<double>(Norm(Cross(e.e0, e.e1)) / Norm(e.e0) / Norm(e.e1));
 }
 
-// How near u is, to bound how far the direction of the vector between two points at distance u
-// turns when x is rounded: min(1, u / the longest edge).
+// How large a length d is against the edges: min(1, d / the longest). Rounding moves points by a
+// part of the longest edge, so it turns the vector between two points at distance d, and changes a
+// psi'' with the margin d, by that part over this number.
 template <class S>
-double Nearness(const S& u, const Edges<S>& e) {
+double Nearness(const S& d, const Edges<S>& e) {
   const S longest = std::max({Norm(e.e0), Norm(e.e1), Norm(e.e2)});
-  return std::min(1.0, static_cast<double>(u / longest));
+  return std::min(1.0, static_cast<double>(d / longest));
 }
 
 // n.e2 (Eq. 1): how far e2 reaches along the normal of e0 and e1.
@@ -84,6 +108,25 @@ template <class S>
 S AlongNormal(const Edges<S>& e) {
   const Vec3<S> normal = Cross(e.e0, e.e1);
   return Dot(normal, e.e2) / Norm(normal);
+}
+
+// The same to a line along e.
+template <class S>
+S DistanceToLine(const Vec3<S>& v, const Vec3<S>& e) {
+  return Norm(v - Dot(v, e) / Dot(e, e) * e);
+}
+
+// |v| to first order: how far v reaches along the direction that its value has.
+template <class S>
+S LinearNorm(const Vec3<S>& v) {
+  const Vec3<S> value{S(ValueOf(v.x)), S(ValueOf(v.y)), S(ValueOf(v.z))};
+  return Dot(value, v) / Norm(value);
+}
+
+// A length turned around by a negative side.
+template <class S, class T>
+S OnSide(const S& l, const T& side) {
+  return side < 0 ? -l : l;
 }
 
 // The sign of n.e2, turned around by a negative side. 0 counts as positive, as do edges that span

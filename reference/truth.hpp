@@ -13,7 +13,7 @@ namespace definite::reference {
 
 // Everything known about one configuration (x, p) of an energy, each quantity computed on first use
 // and kept. Outside the energy's domain every quantity is NaN; where inactive all are zero but the
-// length and the frame's maps. Not thread safe; cheap to make.
+// length and the maps of the frame. Not thread safe; cheap to make.
 template <class T>
 class Truth {
  public:
@@ -46,13 +46,18 @@ class Truth {
     return Keep(curvature_,
                 [&] { return At(energy_.curvature, Undefined(energy_.dofs, energy_.dofs)); });
   }
-  // The Hessian in frame coordinates, the map S from x to them and its remainder D (empty if the
-  // energy has none). All throw std::logic_error if the energy has no frame.
-  const Matrix<T>& FrameHessian() { return WholeFrame().hessian; }
-  const Matrix<T>& FrameMap() { return WholeFrame().map; }
-  const Matrix<T>& FrameRemainder() { return WholeFrame().remainder; }
-  const Spectrum<T>& FrameSpectrum() {
-    return Keep(frame_spectrum_, [&] { return SpectrumOf(FrameHessian()); });
+  // The terms map^T hessian map that sum to the Hessian, and the spectra of their Hessians. Outside
+  // the domain there is one. Both throw std::logic_error if the energy has no frame.
+  const std::vector<FrameTerm<T>>& FrameTerms() {
+    const int n = energy_.dofs, m = energy_.frame_dofs;
+    return Keep(frame_, [&] { return At(energy_.frame, {{Undefined(m, m), Undefined(m, n)}}); });
+  }
+  const std::vector<Spectrum<T>>& FrameSpectra() {
+    return Keep(frame_spectra_, [&] {
+      std::vector<Spectrum<T>> spectra;
+      for (const FrameTerm<T>& term : FrameTerms()) spectra.push_back(SpectrumOf(term.hessian));
+      return spectra;
+    });
   }
 
  private:
@@ -74,13 +79,6 @@ class Truth {
       return At(energy_.derivatives, {kNaN, Undefined(n, 1), Undefined(n, n)});
     });
   }
-  const Frame<T>& WholeFrame() {
-    const int n = energy_.dofs, m = energy_.frame_dofs;
-    return Keep(frame_, [&] {
-      const Matrix<T> remainder = energy_.has_remainder ? Undefined(m, n) : Matrix<T>();
-      return At(energy_.frame, {Undefined(m, m), Undefined(m, n), remainder});
-    });
-  }
 
   inline static const T kNaN = std::numeric_limits<T>::quiet_NaN();
 
@@ -92,8 +90,8 @@ class Truth {
   std::optional<Spectrum<T>> spectrum_;
   std::optional<Matrix<T>> nearest_;
   std::optional<Matrix<T>> curvature_;
-  std::optional<Frame<T>> frame_;
-  std::optional<Spectrum<T>> frame_spectrum_;
+  std::optional<std::vector<FrameTerm<T>>> frame_;
+  std::optional<std::vector<Spectrum<T>>> frame_spectra_;
 };
 
 }  // namespace definite::reference

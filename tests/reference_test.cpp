@@ -14,6 +14,7 @@
 
 #include "reference/closest_points.hpp"
 #include "reference/oracle.hpp"
+#include "reference/penalties.hpp"
 #include "reference/stencils.hpp"
 
 namespace definite::reference {
@@ -64,14 +65,14 @@ bool AllNaN(const Matrix<T>& a) {
 template <class T>
 struct Configuration {
   std::array<T, 12> x;
-  std::array<T, 3> p;
+  std::array<T, 5> p;  // k, eps, side, and what the length and the penalty have of their own
 };
 
 Configuration<double> DrawActive(std::mt19937_64& random) {
   while (true) {
     Configuration<double> c;
     for (double& entry : c.x) entry = Draw(random, 0, 1);
-    c.p = {Draw(random, 0.5, 2), Draw(random, 0.1, 1), Draw(random, -1, 1)};
+    c.p = {Draw(random, 0.5, 2), Draw(random, 0.1, 1), Draw(random, -1, 1), 0, 0};
     const auto [e0, e1, e2] = VertexFace::EdgesOf(c.x.data());
     const Vec3<double> normal = Cross(e0, e1);
     const double l = Dot(normal, e2) / Norm(normal) * (c.p[2] < 0 ? -1 : 1);
@@ -84,6 +85,19 @@ constexpr std::string_view kName = "collision/vertex_face/signed/quadratic";
 template <class T>
 Truth<T> TruthOf(const Configuration<double>& c) {
   return Truth<T>(*FindEnergy<T>(kName), c.x.data(), c.p.data());
+}
+
+// The sum of the terms of the frame, which is the Hessian.
+Matrix<Quad> SumOfTerms(Truth<Quad>& truth) {
+  Matrix<Quad> sum(truth.Of().dofs, truth.Of().dofs);
+  for (const auto& [hessian, map] : truth.FrameTerms()) sum = sum + Congruence(hessian, map);
+  return sum;
+}
+
+// S, which takes x to the frame coordinates.
+template <class T>
+const Matrix<T>& FrameMap(Truth<T>& truth) {
+  return truth.FrameTerms()[0].map;
 }
 
 // Calls check(configuration) for `count` random active configurations.
@@ -305,32 +319,6 @@ TEST(SignedVertexFace, MeasuresAgainstTheUsualNormal) {
   EXPECT_FALSE(energy.active(x, turned));
 }
 
-TEST(SignedVertexFace, DerivativesMatchDifferences) {
-  const Energy<Quad>& energy = *FindEnergy<Quad>(kName);
-  ForRandomConfigurations(20, [&](const Configuration<double>& c) {
-    std::array<Quad, 12> x;
-    std::copy(c.x.begin(), c.x.end(), x.begin());
-    const std::vector<Quad> p(c.p.begin(), c.p.end());
-    ExpectDerivativesMatchDifferences<12>(
-        [&](const Quad* at) { return energy.value(at, p.data()); },
-        [&](const Quad* at) { return energy.derivatives(at, p.data()); }, x, 1e-18);
-  });
-}
-
-TEST(SignedVertexFace, HasThreePositiveAndTwoNegativeEigenvalues) {
-  ForRandomConfigurations(50, [](const Configuration<double>& c) {
-    Truth<Quad> truth = TruthOf<Quad>(c);
-    const Quad tolerance = Quad(1e-25) * FrobeniusNorm(truth.Hessian());
-    int positive = 0, negative = 0;
-    for (const Quad& lambda : truth.HessianSpectrum().values.entries) {
-      positive += lambda > tolerance;
-      negative += lambda < -tolerance;
-    }
-    EXPECT_EQ(positive, 3);
-    EXPECT_EQ(negative, 2);
-  });
-}
-
 TEST(SignedVertexFace, IgnoresTranslations) {
   Matrix<Quad> translations(12, 3);
   for (int i = 0; i < 12; ++i) translations(i, i % 3) = Quad(1);
@@ -338,25 +326,17 @@ TEST(SignedVertexFace, IgnoresTranslations) {
     Truth<Quad> truth = TruthOf<Quad>(c);
     EXPECT_LT(FrobeniusNorm(truth.Hessian() * translations),
               Quad(1e-31) * FrobeniusNorm(truth.Hessian()));
-    EXPECT_LT(FrobeniusNorm(truth.FrameMap() * translations), Quad(1e-31));
+    EXPECT_LT(FrobeniusNorm(FrameMap(truth) * translations), Quad(1e-31));
   });
 }
 
-// Shi & Kim 2023, section 4.3: for signed length the frozen weights lose nothing.
-TEST(SignedVertexFace, FrameHessianPullsBackToTheHessian) {
-  ForRandomConfigurations(20, [](const Configuration<double>& c) {
-    Truth<Quad> truth = TruthOf<Quad>(c);
-    EXPECT_LT(Difference(Congruence(truth.FrameHessian(), truth.FrameMap()), truth.Hessian()),
-              1e-28);
-  });
-}
-
-// That identity holds for any weights; these are the Gram-Schmidt ones.
+// The terms of the frame sum to the Hessian for any weights; these are the Gram-Schmidt ones.
 TEST(SignedVertexFace, FrameIsOrthogonalAndSpansTheEdges) {
   ForRandomConfigurations(20, [](const Configuration<double>& c) {
     Matrix<Quad> x(12, 1);
     std::copy(c.x.begin(), c.x.end(), x.entries.begin());
-    const Matrix<Quad> frame = TruthOf<Quad>(c).FrameMap() * x;
+    Truth<Quad> truth = TruthOf<Quad>(c);
+    const Matrix<Quad> frame = FrameMap(truth) * x;
     const auto c0 = Block(&frame[0], 0), c1 = Block(&frame[0], 1), c2 = Block(&frame[0], 2);
     const auto [e0, e1, e2] = VertexFace::EdgesOf(&x[0]);
     EXPECT_LT(abs(Dot(c0, c1)) + abs(Dot(c0, c2)) + abs(Dot(c1, c2)), Quad(1e-30));
@@ -409,7 +389,7 @@ TEST(SignedVertexFace, TakesEveryScaleOfDoublesInQuad) {
       EXPECT_TRUE(far.Active());
       EXPECT_EQ(far.Hessian().entries, truth.Hessian().entries);
       EXPECT_EQ(far.Nearest().entries, truth.Nearest().entries);
-      EXPECT_LT(Difference(Congruence(far.FrameHessian(), far.FrameMap()), far.Hessian()), 1e-28);
+      EXPECT_LT(Difference(SumOfTerms(far), far.Hessian()), 1e-28);
     }
   });
 }
@@ -420,8 +400,6 @@ constexpr std::string_view kUnsigned = "collision/edge_edge/unsigned/quadratic";
 constexpr std::string_view kFrozen = "collision/edge_edge/unsigned_frozen/quadratic";
 constexpr std::string_view kHybrid = "collision/edge_edge/hybrid/quadratic";
 constexpr std::string_view kEdgeEdge[] = {kSigned, kUnsigned, kFrozen, kHybrid};
-constexpr std::string_view kCollisions[] = {
-    kName, kUnsignedVertexFace, kSigned, kUnsigned, kFrozen, kHybrid};
 
 template <class T, class U>
 Truth<T> TruthOf(std::string_view name, const Configuration<U>& c) {
@@ -452,11 +430,14 @@ T Triple(const Edges<T>& e) {
   return Dot(Cross(e.e0, e.e1), e.e2);
 }
 
+template <int N>
 void ExpectDerivativesMatchDifferences(std::string_view name, const Configuration<Quad>& c) {
   const Energy<Quad>& energy = *FindEnergy<Quad>(name);
-  ExpectDerivativesMatchDifferences<12>(
+  std::array<Quad, N> x;
+  std::copy_n(c.x.begin(), N, x.begin());
+  ExpectDerivativesMatchDifferences<N>(
       [&](const Quad* at) { return energy.value(at, c.p.data()); },
-      [&](const Quad* at) { return energy.derivatives(at, c.p.data()); }, c.x, 1e-18);
+      [&](const Quad* at) { return energy.derivatives(at, c.p.data()); }, x, 1e-18);
 }
 
 Configuration<Quad> ToQuad(const Configuration<double>& c) {
@@ -487,12 +468,6 @@ TEST(UnsignedVertexFace, IsTheDistanceWithTheGivenSign) {
   }
 }
 
-TEST(UnsignedVertexFace, DerivativesMatchDifferences) {
-  ForUnsignedVertexFaces(7, [](const Configuration<double>& c) {
-    ExpectDerivativesMatchDifferences(kUnsignedVertexFace, ToQuad(c));
-  });
-}
-
 TEST(UnsignedVertexFace, IsTheSignedOneWhereTheSignsAgree) {
   ForUnsignedVertexFaces(10, [](const Configuration<double>& c) {
     const double triple = Triple(VertexFace::EdgesOf(c.x.data()));
@@ -505,26 +480,24 @@ TEST(UnsignedVertexFace, IsTheSignedOneWhereTheSignsAgree) {
   });
 }
 
-// Shi & Kim 2023, Eq. 17.
-TEST(UnsignedVertexFace, FrameHessianPullsBackToTheHessianWithTheRemainder) {
+// Shi & Kim 2023, Eq. 17, with the Hessian of psi(|c2|) and D, the Jacobian of the frame less S.
+TEST(UnsignedVertexFace, AnalyticFilterClampsTheFrameAndItsRemainder) {
   ForUnsignedVertexFaces(7, [](const Configuration<double>& c) {
     Truth<Quad> truth = TruthOf<Quad>(kUnsignedVertexFace, c);
-    const Matrix<Quad> main = Congruence(truth.FrameHessian(), truth.FrameMap());
-    const Matrix<Quad> rest = Congruence(truth.FrameHessian(), truth.FrameRemainder());
-    EXPECT_LT(Difference(main - rest, truth.Hessian()), 1e-28);
-    EXPECT_GT(Difference(main, truth.Hessian()), 1e-3);
-    EXPECT_EQ(truth.FrameMap().entries, TruthOf<Quad>(c).FrameMap().entries);
-    EXPECT_TRUE(TruthOf<Quad>(c).FrameRemainder().entries.empty());
-  });
-}
+    const Configuration<Quad> exact = ToQuad(c);
+    const auto free = FrozenFrame<VertexFace>(Variables<12>(exact.x.data()).data(),
+                                              Variables<12>(exact.x.data()).data());
+    const Matrix<Quad>& s = FrameMap(truth);
+    const Matrix<Quad> d = Jacobian(free) - s;
+    const auto at = Values<9>(free.data());
+    const Quad l = truth.Of().length(exact.x.data(), exact.p.data());
+    const auto u = Norm(Block(Variables<9>(at.data()).data(), 2));
+    const auto hessian = Unpack(Quadratic::Value(l < 0 ? -u : u, exact.p.data(), &l)).hessian;
+    EXPECT_LT(Difference(Congruence(hessian, s) - Congruence(hessian, d), truth.Hessian()), 1e-28);
+    EXPECT_GT(Difference(Congruence(hessian, s), truth.Hessian()), 1e-3);
 
-TEST(UnsignedVertexFace, AnalyticFilterClampsEachTerm) {
-  ForUnsignedVertexFaces(7, [](const Configuration<double>& c) {
-    Truth<Quad> truth = TruthOf<Quad>(kUnsignedVertexFace, c);
-    const Matrix<Quad> positive = NearestPsd(SpectrumOf(truth.FrameHessian()));
-    const Matrix<Quad> negative = truth.FrameHessian() - positive;
-    const Matrix<Quad> expected =
-        Congruence(positive, truth.FrameMap()) - Congruence(negative, truth.FrameRemainder());
+    const Matrix<Quad> positive = NearestPsd(SpectrumOf(hessian));
+    const Matrix<Quad> expected = Congruence(positive, s) - Congruence(hessian - positive, d);
     const Matrix<Quad> filtered = FindFilter<Quad>("analytic")->define(truth);
     EXPECT_LT(Difference(filtered, expected), 1e-30);
     const Quad tolerance = Quad(1e-30) * FrobeniusNorm(filtered);
@@ -532,6 +505,34 @@ TEST(UnsignedVertexFace, AnalyticFilterClampsEachTerm) {
     // It only adds: psi'/u on the plane from the first term outside, from the second inside.
     EXPECT_EQ(CountBelow(SpectrumOf(filtered - truth.Hessian()), -tolerance), 0);
   });
+}
+
+// Every collision energy of the table.
+std::vector<std::string_view> CollisionNames() {
+  std::vector<std::string_view> names;
+  for (const Energy<Quad>& energy : AllEnergies<Quad>())
+    if (energy.name.starts_with("collision/")) names.push_back(energy.name);
+  return names;
+}
+
+bool Contains(std::string_view name, std::string_view part) {
+  return name.find(part) != std::string_view::npos;
+}
+
+// With parameters for what the energy of that name has of its own.
+template <class T>
+Configuration<T> WithOwnParameters(std::string_view name, Configuration<T> c) {
+  size_t next = 3;
+  if (Contains(name, "/anisotropic/")) c.p.data()[next++] = T(0.75);
+  if (Contains(name, "/mollified/")) c.p.data()[next++] = T(0.5);
+  if (Contains(name, "/cubic")) c.p.data()[next] = T(0.125);
+  return c;
+}
+
+// Not a penalty of a length, so it has no curvature.
+bool Lacks(std::string_view energy, std::string_view filter) {
+  return Contains(energy, "/mollified/") &&
+         (filter.starts_with("gauss_newton") || filter == "split");
 }
 
 enum class Region { kInside, kEndOfB, kEndOfA, kEnds };
@@ -604,6 +605,62 @@ void ForEdgePairs(int count, F check) {
   }
 }
 
+// Calls check(name, configuration) for every collision energy whose name starts like that, at
+// configurations in its domain of which none is near the border of a region. Vertex-edge and
+// vertex-vertex read the first entries of x.
+template <class F>
+void ForCollisions(std::string_view start, F check) {
+  for (const std::string_view name : CollisionNames()) {
+    if (!name.starts_with(start)) continue;
+    SCOPED_TRACE(name);
+    int seen = 0;
+    const auto check_in_domain = [&](const Configuration<Quad>& c) {
+      const Configuration<Quad> own = WithOwnParameters(name, c);
+      if (!TruthOf<Quad>(name, own).InDomain()) return;
+      ++seen;
+      check(name, own);
+    };
+    if (name.starts_with(EdgeEdge::Name())) {
+      ForEdgePairs(1, check_in_domain);
+    } else {
+      ForUnsignedVertexFaces(5,
+                             [&](const Configuration<double>& c) { check_in_domain(ToQuad(c)); });
+    }
+    EXPECT_GE(seen, 4);
+  }
+}
+template <class F>
+void ForEveryCollision(F check) {
+  ForCollisions("collision/", check);
+}
+
+TEST(Collisions, FrameTermsSumToTheHessian) {
+  ForEveryCollision([](std::string_view name, const Configuration<Quad>& c) {
+    Truth<Quad> truth = TruthOf<Quad>(name, c);
+    EXPECT_LT(Difference(SumOfTerms(truth), truth.Hessian()), 1e-28);
+    const bool splits =
+        name.starts_with("collision/vertex_face/unsigned/") || Contains(name, "/anisotropic/");
+    EXPECT_EQ(truth.FrameTerms().size(), splits ? 3u : 1u);
+  });
+}
+
+// Frozen closest points have a test of their own.
+TEST(Collisions, DerivativesMatchDifferences) {
+  ForEveryCollision([](std::string_view name, const Configuration<Quad>& c) {
+    if (Contains(name, "/unsigned_frozen/") || Contains(name, "/hybrid/")) return;
+    switch (FindEnergy<Quad>(name)->dofs) {
+      case 12:
+        return ExpectDerivativesMatchDifferences<12>(name, c);
+      case 9:
+        return ExpectDerivativesMatchDifferences<9>(name, c);
+      case 6:
+        return ExpectDerivativesMatchDifferences<6>(name, c);
+      default:
+        FAIL() << "dofs";
+    }
+  });
+}
+
 TEST(ClosestPoints, AreThoseTheEdgesWereConstructedFrom) {
   ForEdgePairs(10, [](const EdgePair& pair) {
     const ClosestPoints<Quad> found = FindClosestPoints(pair.Edge());
@@ -656,14 +713,6 @@ TEST(EdgeEdge, LengthsHaveTheSignsOfTheirSides) {
     EXPECT_LT(abs(length(kUnsigned) - pair.Side() * pair.u), Quad(1e-31));
     EXPECT_LT(abs(length(kFrozen) - pair.Side() * pair.u), Quad(1e-31));
     EXPECT_LT(abs(length(kHybrid) - pair.Turn() * pair.u), Quad(1e-31));
-  });
-}
-
-TEST(EdgeEdge, DerivativesMatchDifferences) {
-  ForEdgePairs(2, [](const EdgePair& pair) {
-    ExpectDerivativesMatchDifferences(kSigned, pair);
-    ExpectDerivativesMatchDifferences(kUnsigned, pair);
-    if (pair.region == Region::kInside) ExpectDerivativesMatchDifferences(kHybrid, pair);
   });
 }
 
@@ -734,26 +783,15 @@ TEST(EdgeEdge, HasTwoNegativeEigenvaluesOutsideContact) {
   });
 }
 
-TEST(EdgeEdge, FrameHessianPullsBackToTheHessian) {
-  ForEdgePairs(5, [](const EdgePair& pair) {
-    for (const std::string_view name : kEdgeEdge) {
-      Truth<Quad> truth = TruthOf<Quad, Quad>(name, pair);
-      EXPECT_LT(Difference(Congruence(truth.FrameHessian(), truth.FrameMap()), truth.Hessian()),
-                1e-28)
-          << name;
-      EXPECT_TRUE(truth.FrameRemainder().entries.empty()) << name;
-    }
-  });
-}
-
-// That identity holds for other frames too.
+// The terms of other frames sum to the Hessian too.
 TEST(EdgeEdge, FrameHoldsTheVectorBetweenTheClosestPoints) {
   ForEdgePairs(5, [](const EdgePair& pair) {
     const auto expect = [&](std::string_view name, const Vec3<Quad>& c0, const Vec3<Quad>& c1,
                             const Vec3<Quad>& c2) {
       Matrix<Quad> x(12, 1);
       std::copy(pair.x.begin(), pair.x.end(), x.entries.begin());
-      const Matrix<Quad> c = TruthOf<Quad, Quad>(name, pair).FrameMap() * x;
+      Truth<Quad> truth = TruthOf<Quad, Quad>(name, pair);
+      const Matrix<Quad> c = FrameMap(truth) * x;
       EXPECT_LT(Norm(Block(&c[0], 0) - c0), Quad(1e-31)) << name;
       EXPECT_LT(Norm(Block(&c[0], 1) - c1), Quad(1e-30)) << name;
       EXPECT_LT(Norm(Block(&c[0], 2) - c2), Quad(1e-30)) << name;
@@ -832,7 +870,7 @@ TEST(EdgeEdge, IgnoresTranslations) {
       Truth<Quad> truth = TruthOf<Quad, Quad>(name, pair);
       EXPECT_LT(FrobeniusNorm(truth.Hessian() * translations),
                 Quad(1e-30) * FrobeniusNorm(truth.Hessian()));
-      EXPECT_LT(FrobeniusNorm(truth.FrameMap() * translations), Quad(1e-30));
+      EXPECT_LT(FrobeniusNorm(FrameMap(truth) * translations), Quad(1e-30));
     }
   });
 }
@@ -931,6 +969,510 @@ TEST(EdgeEdge, TouchingIsOutsideTheDomainOfUnsignedLengths) {
   EXPECT_EQ(signed_truth.Value(), 3 * 2 * 2);
 }
 
+// psi at the length that the energy measures, with its slopes.
+template <class P>
+Dual2<Quad, 1> PsiOf(std::string_view name, const Configuration<Quad>& c) {
+  const Energy<Quad>& energy = *FindEnergy<Quad>(name);
+  const Quad l = energy.length(c.x.data(), c.p.data());
+  const Quad* own = c.p.data() + energy.params - P::kParams;
+  return P::Value(Variables<1>(&l)[0], c.p.data(), own);
+}
+
+// Calls check(penalty, name, configuration) for the energies of that length.
+template <class F>
+void ForPenaltiesOf(std::string_view length, F check) {
+  ForCollisions(length, [&](std::string_view name, const Configuration<Quad>& c) {
+    if (name.ends_with("/quadratic")) check(Quadratic{}, name, c);
+    if (name.ends_with("/cubic")) check(Cubic{}, name, c);
+    if (name.ends_with("/log_barrier")) check(LogBarrier{}, name, c);
+  });
+}
+
+// Kronecker product of weights of the vertices and a vector.
+Matrix<Quad> Kronecker(const std::vector<Quad>& w, const Vec3<Quad>& v) {
+  Matrix<Quad> product(static_cast<int>(3 * w.size()), 1);
+  const Quad entries[] = {v.x, v.y, v.z};
+  for (int i = 0; i < product.rows; ++i) product[i] = w.data()[i / 3] * entries[i % 3];
+  return product;
+}
+
+Matrix<Quad> Scaled(const Quad& factor, Matrix<Quad> a) {
+  for (Quad& entry : a.entries) entry *= factor;
+  return a;
+}
+
+TEST(Penalties, HaveTheSlopesOfTheirFormulas) {
+  std::mt19937_64 random(20240614);
+  for (int i = 0; i < 20; ++i) {
+    const Quad p[] = {Quad(Draw(random, 0.5, 2)), Quad(Draw(random, 0.5, 2))};
+    const Quad delta = Draw(random, 0, 1), &k = p[0], &eps = p[1];
+    const Quad l = eps * Draw(random, 0.01, 1), d = l - eps;
+    const auto expect = [&](auto penalty, const Quad& value, const Quad& psi1, const Quad& psi2) {
+      const auto psi = penalty.Value(Variables<1>(&l)[0], p, &delta);
+      EXPECT_LT(abs(psi.value / value - 1), Quad(1e-30)) << penalty.Name();
+      EXPECT_LT(abs(psi.gradient[0] / psi1 - 1), Quad(1e-30)) << penalty.Name();
+      EXPECT_LT(abs(psi.hessian[0] / psi2 - 1), Quad(1e-30)) << penalty.Name();
+      EXPECT_TRUE(psi1 < 0 && psi2 > 0) << penalty.Name();
+      const Quad beyond = 2 * eps;
+      EXPECT_EQ(penalty.Value(eps, p, &delta), 0) << penalty.Name();
+      EXPECT_EQ(penalty.Value(beyond, p, &delta), 0) << penalty.Name();
+    };
+    const Quad root = sqrt(d * d + delta), log_ratio = log(l / eps);
+    expect(Quadratic{}, k * d * d, 2 * k * d, 2 * k);
+    expect(Cubic{}, k * d * d * root, k * d * (3 * d * d + 2 * delta) / root,
+           k * (6 * d * d * d * d + 9 * delta * d * d + 2 * delta * delta) / (root * root * root));
+    expect(LogBarrier{}, -k * d * d * log_ratio, k * (-2 * d * log_ratio - d * d / l),
+           k * ((eps - l) * (eps + 3 * l) / (l * l) - 2 * log_ratio));
+  }
+}
+
+TEST(Penalties, KnowTheirDomain) {
+  const auto in_domain = [](std::string_view name, const Configuration<double>& c) {
+    const bool in = TruthOf<double>(name, c).InDomain();
+    EXPECT_EQ(TruthOf<Quad>(name, c).InDomain(), in);
+    return in;
+  };
+  const auto apart = [](double distance, double eps, double side) {
+    return Configuration<double>{{0, 0, 0, distance}, {1, eps, side, 0}};
+  };
+  const std::string_view barrier = "collision/vertex_vertex/unsigned/log_barrier";
+  EXPECT_TRUE(in_domain(barrier, apart(0.5, 1, 1)));
+  EXPECT_TRUE(in_domain(barrier, apart(2, 1, 1)));
+  EXPECT_FALSE(in_domain(barrier, apart(0.5, 1, -1)));
+  EXPECT_TRUE(in_domain(barrier, apart(1.01e-150, 1, 1)));
+  EXPECT_FALSE(in_domain(barrier, apart(0.99e-150, 1, 1)));
+  EXPECT_TRUE(in_domain(barrier, apart(0.99e-150, 0.5, 1)));
+  EXPECT_FALSE(in_domain(barrier, apart(0, 1, 1)));
+  const std::string_view cubic = "collision/vertex_vertex/unsigned/cubic";
+  Configuration<double> c = apart(0.5, 1, -1);
+  EXPECT_TRUE(in_domain(cubic, c));  // delta = 0
+  c.p[3] = -1e-3;
+  EXPECT_FALSE(in_domain(cubic, c));
+
+  // A vertex below the triangle's usual normal has l = 1.
+  const Configuration<double> below{{0.25, 0.25, -1, 0, 0, 0, 1, 0, 0, 0, 1, 0}, {1, 2, 1}};
+  EXPECT_TRUE(in_domain("collision/vertex_face/signed/log_barrier", below));
+  EXPECT_FALSE(in_domain("collision/vertex_face/signed/log_barrier", WithSide(below, -1)));
+  EXPECT_TRUE(in_domain("collision/vertex_face/unsigned/log_barrier", WithSide(below, 0)));
+}
+
+TEST(Collisions, KnowTheDomainOfTheirOwnParameters) {
+  const auto expect = [](std::string_view name, double parameter, bool in_domain) {
+    Configuration<double> c{{0.25, 0.25, -1, 0, 0, 0, 1, 0, 0, 0, 1, 0}, {1, 2, 1}};
+    c.p[3] = parameter;
+    EXPECT_EQ(TruthOf<Quad>(name, c).InDomain(), in_domain) << name << ", " << parameter;
+  };
+  for (const std::string_view name :
+       {"collision/vertex_face/anisotropic/quadratic", "collision/edge_edge/anisotropic/cubic"}) {
+    for (const double m : {0.5, 0.75, 1.0}) expect(name, m, true);
+    for (const double m : {0.0, 0.4999, 1.0001, std::nan("")}) expect(name, m, false);
+  }
+  const std::string_view mollified = "collision/edge_edge/mollified/quadratic";
+  for (const double threshold : {1e-300, 1.0, 1e300}) expect(mollified, threshold, true);
+  for (const double threshold : {0.0, -1.0, std::nan("")}) expect(mollified, threshold, false);
+}
+
+// Sylvester's law: psi'' > 0 and psi' != 0.
+TEST(Collisions, SignedOnesHaveThreePositiveAndTwoNegativeEigenvalues) {
+  for (const std::string_view length :
+       {"collision/vertex_face/signed", "collision/edge_edge/signed"}) {
+    ForCollisions(length, [](std::string_view name, const Configuration<Quad>& c) {
+      Truth<Quad> truth = TruthOf<Quad>(name, c);
+      const Quad tolerance = Quad(1e-25) * FrobeniusNorm(truth.Hessian());
+      EXPECT_EQ(CountBelow(truth.HessianSpectrum(), -tolerance), 2);
+      EXPECT_EQ(CountBelow(truth.HessianSpectrum(), tolerance), 9);
+    });
+  }
+}
+
+TEST(Collisions, KeepANaN) {
+  for (const std::string_view name : CollisionNames()) {
+    for (size_t i = 0; i < static_cast<size_t>(FindEnergy<double>(name)->dofs); ++i) {
+      Configuration<double> c = WithOwnParameters(name, UnitEdges({0.5, 0.25, 0.5}, kY, 1));
+      c.x.data()[i] = std::nan("");
+      Truth<double> truth = TruthOf<double>(name, c);
+      EXPECT_NE(truth.Value(), truth.Value()) << name << ", entry " << i;
+    }
+  }
+}
+
+TEST(VertexVertex, HasTheEigenvaluesOfADistance) {
+  ForPenaltiesOf(
+      "collision/vertex_vertex", [](auto p, std::string_view name, const Configuration<Quad>& c) {
+        const auto psi = PsiOf<decltype(p)>(name, c);
+        const Quad l = FindEnergy<Quad>(name)->length(c.x.data(), c.p.data());
+        EXPECT_LT(abs(abs(l) - Norm(Block(c.x.data(), 1) - Block(c.x.data(), 0))), Quad(1e-32));
+        EXPECT_EQ(l < 0, c.p[2] < 0);
+        Matrix<Quad> expected(6, 1);
+        expected[0] = 2 * psi.hessian[0];
+        expected[1] = expected[2] = 2 * psi.gradient[0] / l;
+        std::sort(expected.entries.begin(), expected.entries.end());
+        Truth<Quad> truth = TruthOf<Quad>(name, c);
+        EXPECT_LT(Difference(truth.HessianSpectrum().values, expected), 1e-30);
+        // Clamping in the frame is the nearest.
+        EXPECT_LT(Difference(FindFilter<Quad>("analytic")->define(truth), truth.Nearest()), 1e-29);
+      });
+}
+
+TEST(VertexEdge, MeasuresToTheLine) {
+  const Energy<double>& energy = *FindEnergy<double>("collision/vertex_edge/unsigned/quadratic");
+  for (const double at : {0.25, 7.0, -3.0}) {
+    const double x[] = {at, 3, 4, 0, 0, 0, 2, 0, 0};
+    for (const auto& [side, length] : {std::pair(1.0, 5.0), std::pair(0.0, 5.0), {-1.0, -5.0}}) {
+      const double p[] = {3, 6, side};
+      EXPECT_EQ(energy.length(x, p), length);
+      EXPECT_EQ(energy.value(x, p), 3 * (length - 6) * (length - 6));
+      EXPECT_TRUE(energy.in_domain(x, p));
+    }
+  }
+  const double on_line[] = {7, 0, 0, 0, 0, 0, 2, 0, 0}, no_edge[] = {7, 1, 0, 1, 0, 0, 1, 0, 0};
+  const double p[] = {3, 6, 1};
+  EXPECT_FALSE(energy.in_domain(on_line, p));
+  EXPECT_FALSE(energy.in_domain(no_edge, p));
+}
+
+// w (x) m, across the edge and the distance, is decoupled; the other three eigenvalues are the
+// roots of a cubic.
+TEST(VertexEdge, HasOneEigenvalueAcrossAndThreeOfACubic) {
+  ForPenaltiesOf("collision/vertex_edge", [](auto p, std::string_view name,
+                                             const Configuration<Quad>& c) {
+    const auto psi = PsiOf<decltype(p)>(name, c);
+    const Quad side = c.p[2] < 0 ? -1 : 1, psi1 = side * psi.gradient[0], psi2 = psi.hessian[0];
+    const auto [e, none, from] = VertexEdge::EdgesOf(c.x.data());
+    const Quad a = Norm(e), be = Dot(from, e) / (a * a);
+    const Vec3<Quad> r = from - be * e, m = Cross(e, r);
+    const Quad u = Norm(r);
+    EXPECT_LT(abs(u - side * FindEnergy<Quad>(name)->length(c.x.data(), c.p.data())), Quad(1e-30));
+
+    Truth<Quad> truth = TruthOf<Quad>(name, c);
+    const std::vector<Quad> w{1, be - 1, -be};
+    const Quad w2 = 1 + (be - 1) * (be - 1) + be * be, across = psi1 * w2 / u;
+    const Matrix<Quad> v = Kronecker(w, m);
+    EXPECT_LT(Difference(truth.Hessian() * v, Scaled(across, v)), 1e-28);
+
+    const Quad norm = FrobeniusNorm(truth.Hessian()), tolerance = Quad(1e-25) * norm;
+    const Quad cap_a = -2 * psi1 * u / (a * a), cap_b2 = 2 * psi1 * psi1 * w2 / (a * a);
+    int roots = 0;
+    for (const Quad& mu : truth.HessianSpectrum().values.entries) {
+      if (abs(mu) < tolerance || abs(mu - across) < tolerance) continue;
+      ++roots;
+      const Quad cubic = mu * mu * mu - (cap_a + psi2 * w2) * mu * mu -
+                         (cap_b2 - 1.5 * psi2 * cap_a) * mu + 1.5 * psi2 * cap_b2;
+      EXPECT_LT(abs(cubic), Quad(1e-28) * norm * norm * norm);
+    }
+    EXPECT_EQ(roots, 3);
+    EXPECT_EQ(CountBelow(truth.HessianSpectrum(), -tolerance), side < 0 ? 1 : 2);
+  });
+}
+
+// Between a point and an inside, and between two ends, edges do what the smaller stencils do.
+TEST(EdgeEdge, UnsignedIsVertexEdgeOrVertexVertexAtEnds) {
+  ForCollisions("collision/edge_edge/unsigned/", [](std::string_view name,
+                                                    const Configuration<Quad>& c) {
+    const auto points = FindClosestPoints(EdgeEdge::EdgesOf(c.x.data()));
+    if (points.BothInside()) return;
+    const int end_of_a = points.a == 0 ? 0 : 1, end_of_b = points.b == 0 ? 2 : 3;
+    const std::vector<int> vertices = points.a_inside   ? std::vector{end_of_b, 0, 1}
+                                      : points.b_inside ? std::vector{end_of_a, 2, 3}
+                                                        : std::vector{end_of_a, end_of_b};
+    const int n = static_cast<int>(3 * vertices.size());
+    const auto entry = [&](int i) { return 3 * vertices.data()[i / 3] + i % 3; };
+    const Quad l = FindEnergy<Quad>(name)->length(c.x.data(), c.p.data());
+    Configuration<Quad> part = WithSide(c, l < 0 ? -1 : 1);
+    for (int i = 0; i < n; ++i) part.x.data()[i] = c.x.data()[entry(i)];
+    const std::string stencil = vertices.size() == 3 ? VertexEdge::Name() : VertexVertex::Name();
+    const std::string penalty(name.substr(name.rfind('/')));
+    Truth<Quad> small = TruthOf<Quad>(stencil + "/unsigned" + penalty, part);
+    Truth<Quad> truth = TruthOf<Quad>(name, c);
+    EXPECT_LT(abs(truth.Value() - small.Value()), Quad(1e-29) * small.Value());
+    for (const Filter<Quad>& filter : AllFilters<Quad>()) {
+      const Matrix<Quad> whole = filter.define(small);
+      Matrix<Quad> expected(12, 12);
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) expected(entry(i), entry(j)) = whole(i, j);
+      EXPECT_LT(Difference(filter.define(truth), expected), 1e-27) << filter.name;
+    }
+  });
+}
+
+constexpr std::string_view kAnisotropic[] = {"collision/vertex_face/anisotropic",
+                                             "collision/edge_edge/anisotropic"};
+
+// The energy of that name with its anisotropic length made signed, which takes no m.
+Truth<Quad> SignedTruth(std::string_view name, Configuration<Quad> c) {
+  std::string signed_name(name);
+  signed_name.replace(signed_name.find("anisotropic"), 11, "signed");
+  c.p[3] = c.p[4];
+  return TruthOf<Quad>(signed_name, c);
+}
+
+TEST(Anisotropic, IsSignedForMOneAndForPositiveLengths) {
+  for (const std::string_view length : kAnisotropic) {
+    ForCollisions(length, [](std::string_view name, Configuration<Quad> c) {
+      for (const double m : {0.5, 0.8, 1.0}) {
+        c.p[3] = Quad(m);
+        Truth<Quad> truth = TruthOf<Quad>(name, c), other = SignedTruth(name, c);
+        const Quad l = other.Of().length(c.x.data(), c.p.data());
+        const Quad h = truth.Of().length(c.x.data(), c.p.data());
+        EXPECT_LT(abs(h - (l > 0 ? l : (2 * c.p[3] - 1) * l)), Quad(1e-32));
+        if (l < 0 && m < 1) continue;
+        EXPECT_LT(abs(truth.Value() - other.Value()), Quad(1e-31) * other.Value());
+        EXPECT_LT(Difference(truth.Gradient(), other.Gradient()), 1e-30);
+        EXPECT_LT(Difference(truth.Hessian(), other.Hessian()), 1e-30);
+        EXPECT_LT(Difference(truth.Curvature(), other.Curvature()), 1e-30);
+        if (m == 1) {
+          for (const Filter<Quad>& filter : AllFilters<Quad>())
+            EXPECT_LT(Difference(filter.define(truth), filter.define(other)), 1e-29) << filter.name;
+        }
+      }
+    });
+  }
+}
+
+// m = 1/2 forgets a penetration.
+TEST(Anisotropic, HasNoForceInsideForMOneHalf) {
+  for (const std::string_view length : kAnisotropic) {
+    ForCollisions(length, [](std::string_view name, Configuration<Quad> c) {
+      c.p[3] = Quad(0.5);
+      Truth<Quad> truth = TruthOf<Quad>(name, c), other = SignedTruth(name, c);
+      if (other.Of().length(c.x.data(), c.p.data()) > 0) return;
+      EXPECT_TRUE(truth.Active());
+      EXPECT_GT(truth.Value(), 0);
+      EXPECT_TRUE(AllEqual(truth.Gradient(), Quad(0)));
+    });
+  }
+}
+
+// Shi & Kim 2023, Eq. 35. Erratum: its 2 Psi_lu lacks the sign of l.
+TEST(Anisotropic, FrameTermsAreThePapersGroups) {
+  for (const std::string_view length : kAnisotropic) {
+    ForPenaltiesOf(length, [](auto p, std::string_view name, Configuration<Quad> c) {
+      for (const double m : {0.5, 0.8, 1.0}) {
+        c.p[3] = Quad(m);
+        Truth<Quad> truth = TruthOf<Quad>(name, c);
+        Matrix<Quad> x(12, 1);
+        std::copy(c.x.begin(), c.x.end(), x.entries.begin());
+        const Matrix<Quad> at = FrameMap(truth) * x;
+        const auto v = Variables<9>(&at[0]);
+        const auto l = Unpack(OnSide(AlongNormal(FrameEdges(v.data())), c.p[2]));
+        const auto u = Unpack(Norm(Block(v.data(), 2)));
+        const auto psi = PsiOf<decltype(p)>(name, c);
+        const Quad &m1 = c.p[3], sign = l.value < 0 ? -1 : 1, h_by_l = m1 + sign * (1 - m1);
+        const auto& terms = truth.FrameTerms();
+        ASSERT_EQ(terms.size(), 3u);
+        const Matrix<Quad> first = Outer(Quad(psi.hessian[0] * h_by_l * h_by_l), l.gradient) +
+                                   Scaled(m1 * psi.gradient[0], l.hessian);
+        const Matrix<Quad> second = Scaled((1 - m1) * psi.gradient[0], u.hessian);
+        EXPECT_LT(Difference(terms[0].hessian, first), 1e-28);
+        EXPECT_LT(Difference(terms[1].hessian, second), 1e-28);
+        EXPECT_EQ(terms[2].hessian.entries, (-terms[1].hessian).entries);
+        EXPECT_EQ(terms[0].map.entries, terms[1].map.entries);
+      }
+    });
+  }
+}
+
+// p with this threshold.
+EdgePair WithThreshold(EdgePair pair, const Quad& threshold) {
+  pair.p[3] = threshold;
+  return pair;
+}
+
+Quad SquaredCross(const Edges<Quad>& e) { return Dot(Cross(e.e0, e.e1), Cross(e.e0, e.e1)); }
+
+constexpr std::string_view kMollified = "collision/edge_edge/mollified/quadratic";
+
+TEST(Mollified, IsUnsignedAboveTheThresholdAndAPartOfItBelow) {
+  ForEdgePairs(3, [](const EdgePair& pair) {
+    const Quad c = SquaredCross(pair.Edge());
+    Truth<Quad> plain = TruthOf<Quad, Quad>(kUnsigned, pair);
+    Truth<Quad> above = TruthOf<Quad, Quad>(kMollified, WithThreshold(pair, c * Quad(0.99)));
+    EXPECT_EQ(above.Value(), plain.Value());
+    EXPECT_EQ(above.Gradient().entries, plain.Gradient().entries);
+    EXPECT_EQ(above.Hessian().entries, plain.Hessian().entries);
+    for (const double part : {0.01, 0.5, 0.99}) {
+      Truth<Quad> below = TruthOf<Quad, Quad>(kMollified, WithThreshold(pair, c / Quad(part)));
+      EXPECT_LT(abs(below.Value() - (2 - Quad(part)) * part * plain.Value()), Quad(1e-30));
+      EXPECT_GT(Difference(below.Hessian(), plain.Hessian()), 1e-3);
+    }
+    EXPECT_THROW(above.Curvature(), std::logic_error);
+  });
+}
+
+// Four 2x2 blocks and a scalar, on strains and turns of an orthogonal frame.
+TEST(Mollified, FrameHessianHasBlocksBetweenInsides) {
+  ForEdgePairs(5, [](const EdgePair& drawn) {
+    if (drawn.region != Region::kInside) return;
+    for (const double part : {0.1, 0.9}) {
+      const Quad c = SquaredCross(drawn.Edge());
+      const EdgePair pair = WithThreshold(drawn, c / Quad(part));
+      Truth<Quad> truth = TruthOf<Quad, Quad>(kMollified, pair);
+      ASSERT_EQ(truth.FrameTerms().size(), 1u);
+      const Matrix<Quad>& s = FrameMap(truth);
+      Matrix<Quad> x(12, 1);
+      std::copy(pair.x.begin(), pair.x.end(), x.entries.begin());
+      const Matrix<Quad> frame = s * x;
+      const Vec3<Quad> c0 = Block(&frame[0], 0), c1 = Block(&frame[0], 1);
+      const Quad a = Norm(c0), b = Norm(c1);
+      const Vec3<Quad> t0 = Quad(1 / a) * c0, t1 = Quad(1 / b) * c1, n = Cross(t0, t1);
+      const Quad l = Dot(n, Block(&frame[0], 2)), sign = l < 0 ? -1 : 1;
+      const auto& ex = pair.p[3];
+      const Quad m = c / ex * (2 - c / ex), m1 = 2 * (1 - c / ex) / ex, m2 = -2 / (ex * ex);
+      const Quad away = pair.Side() * abs(l) - pair.p[1];
+      const Quad psi = pair.p[0] * away * away, psi1 = 2 * pair.p[0] * away * pair.Side() * sign;
+      const Quad psi2 = 2 * pair.p[0];
+
+      // v at slot i of the frame, as a functional.
+      const auto at = [](int slot, const Quad& factor, const Vec3<Quad>& v) {
+        std::vector<Quad> weights(3, Quad(0));
+        weights.data()[slot] = factor;
+        return Kronecker(weights, v);
+      };
+      const auto block = [](const Matrix<Quad>& u, const Matrix<Quad>& v, const Quad& uu,
+                            const Quad& uv, const Quad& vv) {
+        const Matrix<Quad> mixed = u * Transpose(v);
+        return Outer(uu, u) + Scaled(uv, mixed + Transpose(mixed)) + Outer(vv, v);
+      };
+      const Quad root2 = sqrt(Quad(2)), zero(0);
+      const auto x0 = at(0, 1 / a, t0), y1 = at(1, 1 / b, t1), z2 = at(2, 1, n);
+      const Matrix<Quad> expected =
+          block(at(0, 1, n), at(2, 1, t0), 2 * b * b * psi * m1 - m * psi1 * l / (a * a),
+                -m * psi1 / a, zero) +
+          block(at(1, 1, n), at(2, 1, t1), 2 * a * a * psi * m1 - m * psi1 * l / (b * b),
+                -m * psi1 / b, zero) +
+          block(at(1, 1, t0), at(0, 1, t1), zero, -2 * a * b * psi * m1, zero) +
+          block(Scaled(1 / root2, x0 + y1), z2, psi * (6 * c * m1 + 8 * c * c * m2),
+                2 * root2 * c * m1 * psi1, m * psi2) +
+          Outer(Quad(-2 * c * m1 * psi), Scaled(1 / root2, x0 - y1));
+      EXPECT_LT(Difference(truth.FrameTerms()[0].hessian, expected), 1e-28);
+      const Quad tolerance = Quad(1e-25) * FrobeniusNorm(truth.Hessian());
+      EXPECT_EQ(CountBelow(truth.HessianSpectrum(), -tolerance), 5);
+      EXPECT_EQ(12 - CountBelow(truth.HessianSpectrum(), tolerance), 4);
+    }
+  });
+}
+
+TEST(Mollified, FrameIsTheEdgesAtEnds) {
+  ForEdgePairs(1, [](const EdgePair& pair) {
+    if (pair.region == Region::kInside) return;
+    Truth<Quad> truth = TruthOf<Quad, Quad>(kMollified, WithThreshold(pair, 100));
+    const Matrix<Quad> edges =
+        Jacobian(Stack(EdgeEdge::EdgesOf(Variables<12>(pair.x.data()).data())));
+    EXPECT_EQ(FrameMap(truth).entries, edges.entries);
+  });
+}
+
+// m = 0 and its gradient vanishes, but not its Hessian, 2 psi / ex Hess c.
+TEST(Mollified, ParallelEdgesDoNotAct) {
+  for (const Vec3<double>& start : {Vec3<double>{0.25, 0.75, 1}, {1.375, 0.5, 1.5}}) {
+    for (const double side : {1.0, -1.0}) {
+      Configuration<double> edges = UnitEdges(start, kX, side);
+      edges.p[3] = 0.5;
+      Truth<Quad> truth = TruthOf<Quad>(kMollified, edges);
+      EXPECT_TRUE(truth.InDomain());
+      EXPECT_TRUE(truth.Active());
+      EXPECT_EQ(truth.Value(), 0);
+      EXPECT_TRUE(AllEqual(truth.Gradient(), Quad(0)));
+      const Configuration<Quad> exact = ToQuad(edges);
+      const auto e = EdgeEdge::EdgesOf(Variables<12>(exact.x.data()).data());
+      const auto cross = Cross(e.e0, e.e1);
+      const Quad psi = TruthOf<Quad>(kUnsigned, edges).Value();
+      EXPECT_LT(Difference(truth.Hessian(),
+                           Scaled(2 * psi / exact.p[3], Unpack(Dot(cross, cross)).hessian)),
+                1e-30);
+      EXPECT_LT(Difference(truth.Nearest(), truth.Hessian()), 1e-30);
+    }
+  }
+}
+
+TEST(Split, AddsTheClampedGeometricTermToTheCurvature) {
+  ForEveryCollision([](std::string_view name, const Configuration<Quad>& c) {
+    if (Lacks(name, "split")) return;
+    Truth<Quad> truth = TruthOf<Quad>(name, c);
+    const Matrix<Quad> split = FindFilter<Quad>("split")->define(truth);
+    const Quad tolerance = Quad(1e-30) * FrobeniusNorm(split);
+    EXPECT_EQ(CountBelow(SpectrumOf(split), -tolerance), 0);
+    EXPECT_EQ(CountBelow(SpectrumOf(split - truth.Curvature()), -tolerance), 0);
+    EXPECT_EQ(CountBelow(SpectrumOf(split - truth.Hessian()), -tolerance), 0);
+    // What it adds is the negative part of the geometric term.
+    const auto negative = NearestPsd(SpectrumOf(truth.Curvature() - truth.Hessian()));
+    EXPECT_LT(FrobeniusNorm(split - truth.Hessian() - negative), tolerance);
+  });
+}
+
+// There w is orthogonal to the turns of the normal; elsewhere split is not the nearest.
+TEST(Split, IsTheNearestAtTheCentroidAndBetweenTheMiddles) {
+  std::mt19937_64 random(20240615);
+  const auto distance = [](std::string_view name, const Configuration<double>& c) {
+    Truth<Quad> truth = TruthOf<Quad>(name, c);
+    EXPECT_TRUE(truth.Active());
+    return Difference(FindFilter<Quad>("split")->define(truth), truth.Nearest());
+  };
+  for (int i = 0; i < 10; ++i) {
+    // Entries that are short, so that the centroid and the middle are exact.
+    const auto draw = [&] { return std::round(Draw(random, -100, 100)) / 16; };
+    Vec3<double> v[3];
+    for (Vec3<double>& at : v) at = {3 * draw(), 3 * draw(), 3 * draw()};
+    const Vec3<double> e0 = v[0] - v[1], e1 = v[2] - v[1];
+    const Vec3<double> off = 1.0 / 1024 * Cross(e0, e1);
+    const auto thirds = v[0] + v[1] + v[2];
+    const Vec3<double> centroid{thirds.x / 3, thirds.y / 3, thirds.z / 3};
+    const auto configuration = [&](const std::array<Vec3<double>, 4>& vertices) {
+      Configuration<double> c{{}, {1, 1000, 1}};
+      for (size_t j = 0; j < 4; ++j) {
+        c.x.data()[3 * j] = vertices.data()[j].x;
+        c.x.data()[3 * j + 1] = vertices.data()[j].y;
+        c.x.data()[3 * j + 2] = vertices.data()[j].z;
+      }
+      return c;
+    };
+    EXPECT_LT(distance(kName, configuration({centroid + off, v[0], v[1], v[2]})), 1e-28);
+    EXPECT_GT(distance(kName, configuration({v[0] + off, v[0], v[1], v[2]})), 1e-6);
+    EXPECT_LT(distance(kSigned, configuration({e0, -1.0 * e0, e1 + off, off - e1})), 1e-28);
+    EXPECT_GT(distance(kSigned, configuration({e0, 0.0 * e0, e1 + off, off - e1})), 1e-6);
+  }
+}
+
+// A length is good to a roundoff of the longest edge: what matters is how far psi'' stays the same.
+TEST(Energies, AreConditionedByTheMarginOfTheirPenalty) {
+  const auto expect = [](std::string_view name, const Configuration<double>& c, double expected) {
+    EXPECT_NEAR(FindEnergy<double>(name)->conditioning(c.x.data(), c.p.data()), expected, 1e-14)
+        << name;
+  };
+  // u = l = 0.25 with the sine 0.8 and edges of length 1.
+  Configuration<double> face{{0, 0, -0.25, 1, 0, 0, 0, 0, 0, 0.6, 0.8, 0}, {1, 1, 1, 0.01}};
+  for (const std::string length :
+       {"collision/vertex_face/signed", "collision/vertex_face/unsigned"}) {
+    face.p[2] = length.ends_with("unsigned") ? 1 : -1;
+    const double nearness = length.ends_with("unsigned") ? 0.25 : 1;
+    for (const auto& [eps, barrier] : {std::pair(1.0, 0.25), std::pair(0.375, 0.125)}) {
+      face.p[1] = eps;
+      expect(length + "/log_barrier", face, 0.8 * barrier);
+      expect(length + "/quadratic", face, 0.8 * nearness);
+      expect(length + "/cubic", face,
+             0.8 * std::min(nearness, std::hypot(eps - 0.25, std::sqrt(face.p[3]))));
+    }
+    face.p[1] = 0.25;  // inactive
+    expect(length + "/log_barrier", face, 0.8 * nearness);
+  }
+  const auto inside = UnitEdges({0.25, -0.25, 0.5}, {0.6, 0.8, 0}, 1);
+  const auto at_end = UnitEdges({0.25, 0.375, 0.5}, {0.6, 0.8, 0}, 1);  // u = 0.625
+  for (const std::string length : {"unsigned", "unsigned_frozen", "hybrid", "mollified"}) {
+    const std::string name = "collision/edge_edge/" + length + "/log_barrier";
+    expect(name, WithOwnParameters(name, inside), 0.8 * 0.5);
+    expect(name, WithOwnParameters(name, at_end), 0.625);
+  }
+  expect("collision/edge_edge/mollified/quadratic", inside, 0.8);
+  const auto anisotropic = WithOwnParameters("/anisotropic/", inside);
+  expect("collision/edge_edge/anisotropic/quadratic", anisotropic, 0.8 * 0.5);
+  const Configuration<double> edge{{7, 3, 4, 0, 0, 0, 2, 0, 0}, {1, 6, 1}};
+  expect("collision/vertex_edge/unsigned/quadratic", edge, 5 / std::sqrt(74));
+  expect("collision/vertex_edge/unsigned/log_barrier", edge, 1 / std::sqrt(74));
+  const Configuration<double> points{{0, 0, 0, 0, 4, 0}, {1, 5, 1}};
+  expect("collision/vertex_vertex/unsigned/quadratic", points, 1);
+  expect("collision/vertex_vertex/unsigned/log_barrier", points, 0.25);
+}
+
 // docs/protocol.md, section 1: the sine of the angle and the distance over the longest edge.
 TEST(Energies, KnowTheirConditioning) {
   const auto conditioning = [](std::string_view name, const Configuration<double>& c) {
@@ -965,7 +1507,7 @@ TYPED_TEST(TruthTest, IsZeroWhereInactive) {
     EXPECT_FALSE(truth.Active());
     EXPECT_EQ(truth.Value(), 0);
     EXPECT_TRUE(AllEqual(truth.Gradient(), T(0)));
-    EXPECT_TRUE(AllEqual(truth.FrameHessian(), T(0)));
+    EXPECT_TRUE(AllEqual(truth.FrameTerms()[0].hessian, T(0)));
     EXPECT_TRUE(AllEqual(truth.HessianSpectrum().values, T(0)));
     for (const Filter<T>& filter : AllFilters<T>())
       EXPECT_TRUE(AllEqual(filter.define(truth), T(0))) << filter.name;
@@ -974,16 +1516,24 @@ TYPED_TEST(TruthTest, IsZeroWhereInactive) {
 
 TYPED_TEST(TruthTest, IsZeroWhereAnyCollisionIsInactive) {
   using T = TypeParam;
-  for (const std::string_view name : kCollisions) {
-    ForRandomConfigurations(5, [&](Configuration<double> c) {
+  for (const std::string_view name : CollisionNames()) {
+    SCOPED_TRACE(name);
+    int seen = 0;
+    ForRandomConfigurations(10, [&](Configuration<double> c) {
       c.p[1] = -2;
-      Truth<T> truth = TruthOf<T>(name, c);
-      EXPECT_TRUE(truth.InDomain());
+      Truth<T> truth = TruthOf<T>(name, WithOwnParameters(name, c));
+      EXPECT_TRUE(truth.InDomain() || name.ends_with("log_barrier"));
+      if (!truth.InDomain()) return;
+      ++seen;
       EXPECT_FALSE(truth.Active());
-      EXPECT_GT(FrobeniusNorm(truth.FrameMap()), 0);
-      for (const Filter<T>& filter : AllFilters<T>())
-        EXPECT_TRUE(AllEqual(filter.define(truth), T(0))) << name << ", " << filter.name;
+      EXPECT_EQ(truth.Value(), 0);
+      EXPECT_GT(FrobeniusNorm(FrameMap(truth)), 0);
+      for (const Filter<T>& filter : AllFilters<T>()) {
+        if (Lacks(name, filter.name)) continue;
+        EXPECT_TRUE(AllEqual(filter.define(truth), T(0))) << filter.name;
+      }
     });
+    EXPECT_GT(seen, 0);
   }
 }
 
@@ -1000,7 +1550,7 @@ TYPED_TEST(TruthTest, IsInactiveAtTheActivationDistance) {
 TYPED_TEST(TruthTest, IsNaNOutsideTheDomain) {
   using T = TypeParam;
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
-  const std::array<double, 3> p{1, 2, 1};
+  const std::array<double, 5> p{1, 2, 1};
   const Configuration<double> outside[] = {
       {{0, 0, 1, 1, 0, 0, 0, 0, 0, 2, 0, 0}, p},                    // e0 and e1 parallel
       {{0, 0, 1, 1, 0, 0, 0, 0, 0, std::sqrt(0.5), 0.7e-8, 0}, p},  // sine 0.99e-8
@@ -1014,7 +1564,7 @@ TYPED_TEST(TruthTest, IsNaNOutsideTheDomain) {
     EXPECT_FALSE(truth.InDomain());
     EXPECT_FALSE(truth.Active());
     EXPECT_NE(truth.Value(), truth.Value());
-    EXPECT_TRUE(AllNaN(truth.Gradient()) && AllNaN(truth.FrameMap()));
+    EXPECT_TRUE(AllNaN(truth.Gradient()) && AllNaN(FrameMap(truth)));
     EXPECT_TRUE(AllNaN(truth.HessianSpectrum().values));
     for (const Filter<T>& filter : AllFilters<T>())
       EXPECT_TRUE(AllNaN(filter.define(truth))) << filter.name;
@@ -1035,7 +1585,7 @@ TYPED_TEST(TruthTest, IsNaNOutsideTheDomainOfEdges) {
         EXPECT_FALSE(TruthOf<T>(name, c).InDomain()) << name << ", entry " << i << ", " << bad;
       }
     }
-    const std::array<double, 3> p{1, 2, 1};
+    const std::array<double, 5> p{1, 2, 1};
     for (const Configuration<double>& c :
          {Configuration<double>{{0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 1, 0}, p},
           Configuration<double>{{0, 1, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0}, p},
@@ -1046,9 +1596,6 @@ TYPED_TEST(TruthTest, IsNaNOutsideTheDomainOfEdges) {
   const Configuration<double> touching{{0.5, 0.5, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0}, {1, 2, 1}};
   Truth<T> truth = TruthOf<T>(kUnsignedVertexFace, touching);
   EXPECT_FALSE(truth.InDomain());
-  EXPECT_EQ(truth.FrameRemainder().rows, 9);
-  EXPECT_EQ(truth.FrameRemainder().cols, 12);
-  EXPECT_TRUE(AllNaN(truth.FrameRemainder()));
   for (const Filter<T>& filter : AllFilters<T>())
     EXPECT_TRUE(AllNaN(filter.define(truth))) << filter.name;
 }
@@ -1069,23 +1616,9 @@ TYPED_TEST(TruthTest, RefusesWhatTheEnergyLacks) {
   bare.curvature = nullptr;
   const double x[] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}, p[] = {1, 1, 1};
   Truth<T> truth(bare, x, p);
-  EXPECT_THROW(truth.FrameHessian(), std::logic_error);
+  EXPECT_THROW(truth.FrameTerms(), std::logic_error);
   EXPECT_THROW(truth.Curvature(), std::logic_error);
   EXPECT_GT(FrobeniusNorm(truth.Nearest()), 0);
-}
-
-// Calls check(name, configuration) for every collision energy, at configurations of which none is
-// near the border of a region.
-template <class F>
-void ForEveryCollision(F check) {
-  for (const std::string_view name : kCollisions) {
-    SCOPED_TRACE(name);
-    if (name.starts_with(EdgeEdge::Name())) {
-      ForEdgePairs(2, [&](const EdgePair& pair) { check(name, pair); });
-    } else {
-      ForUnsignedVertexFaces(7, [&](const Configuration<double>& c) { check(name, ToQuad(c)); });
-    }
-  }
 }
 
 TEST(Truth, AgreesBetweenDoubleAndQuad) {
@@ -1097,18 +1630,20 @@ TEST(Truth, AgreesBetweenDoubleAndQuad) {
   ForEveryCollision([&](std::string_view name, const Configuration<Quad>& c) {
     Configuration<double> rounded;
     for (size_t i = 0; i < 12; ++i) rounded.x.data()[i] = static_cast<double>(c.x.data()[i]);
-    for (size_t i = 0; i < 3; ++i) rounded.p.data()[i] = static_cast<double>(c.p.data()[i]);
+    for (size_t i = 0; i < 5; ++i) rounded.p.data()[i] = static_cast<double>(c.p.data()[i]);
     Truth<double> rough = TruthOf<double>(name, rounded);
     Truth<Quad> exact = TruthOf<Quad>(name, rounded);
     EXPECT_TRUE(rough.Active() && exact.Active());
     EXPECT_NEAR(rough.Value(), static_cast<double>(exact.Value()), 1e-12 * rough.Value());
     EXPECT_LT(Difference(rough.Gradient(), to_double(exact.Gradient())), 1e-10);
-    EXPECT_LT(Difference(rough.FrameMap(), to_double(exact.FrameMap())), 1e-10);
-    for (const Filter<Quad>& filter : AllFilters<Quad>())
+    EXPECT_LT(Difference(FrameMap(rough), to_double(FrameMap(exact))), 1e-10);
+    for (const Filter<Quad>& filter : AllFilters<Quad>()) {
+      if (Lacks(name, filter.name)) continue;
       EXPECT_LT(Difference(FindFilter<double>(filter.name)->define(rough),
                            to_double(filter.define(exact))),
                 1e-10)
           << filter.name;
+    }
   });
 }
 
@@ -1118,7 +1653,10 @@ TEST(Filters, OfTheFrameHaveTheDefinitionsOfTheirNamesakes) {
       Truth<Quad> truth = TruthOf<Quad>(energy, c);
       return FindFilter<Quad>(name)->define(truth).entries;
     };
-    EXPECT_EQ(define("gauss_newton_frame"), define("gauss_newton"));
+    if (!Lacks(energy, "gauss_newton")) {
+      EXPECT_EQ(define("gauss_newton_frame"), define("gauss_newton"));
+    }
+    EXPECT_EQ(define("nearest"), define("numeric"));
     for (const std::string_view name : {"analytic_printed", "analytic_frame", "numeric_frame"})
       EXPECT_EQ(define(name), define("analytic")) << name;
   });
@@ -1132,8 +1670,13 @@ TEST(Filters, AbsoluteOnesAddWhatClampingAddsTwice) {
          {std::pair("absolute", "analytic"), std::pair("absolute_numeric", "numeric")}) {
       const Matrix<Quad> clamped = FindFilter<Quad>(clamping)->define(truth);
       const Matrix<Quad> absolute = FindFilter<Quad>(name)->define(truth);
-      EXPECT_LT(Difference(absolute, clamped + (clamped - truth.Hessian())), 1e-29) << name;
+      EXPECT_LT(Difference(absolute, clamped + (clamped - truth.Hessian())), 1e-28) << name;
     }
+    const auto define = [&](std::string_view name) {
+      return FindFilter<Quad>(name)->define(truth);
+    };
+    const Matrix<Quad> blend = define("blend_half");
+    EXPECT_LT(Difference(blend + blend, define("analytic") + define("absolute")), 1e-30);
   });
 }
 
@@ -1173,12 +1716,19 @@ TYPED_TEST(TruthTest, TablesHoldEveryRowOnce) {
   };
   const auto energies = names(AllEnergies<T>());
   const auto filters = names(AllFilters<T>());
-  for (const std::string_view name :
-       {kName, kUnsignedVertexFace, kSigned, kUnsigned, kFrozen, kHybrid})
-    EXPECT_EQ(energies.count(name), 1u) << name;
-  for (const char* name :
-       {"none", "gauss_newton", "gauss_newton_frame", "analytic", "analytic_printed",
-        "analytic_frame", "numeric", "numeric_frame", "absolute", "absolute_numeric"})
+  for (const std::string name :
+       {"vertex_face/signed", "vertex_face/unsigned", "vertex_face/anisotropic", "edge_edge/signed",
+        "edge_edge/unsigned", "edge_edge/unsigned_frozen", "edge_edge/hybrid",
+        "edge_edge/anisotropic", "edge_edge/mollified", "vertex_edge/unsigned",
+        "vertex_vertex/unsigned"}) {
+    for (const std::string penalty : {"quadratic", "cubic", "log_barrier"}) {
+      const bool makes_sense = !name.ends_with("anisotropic") || penalty != "log_barrier";
+      EXPECT_EQ(energies.count("collision/" + name + "/" + penalty), makes_sense) << name;
+    }
+  }
+  for (const char* name : {"none", "gauss_newton", "gauss_newton_frame", "analytic",
+                           "analytic_printed", "analytic_frame", "numeric", "numeric_frame",
+                           "absolute", "absolute_numeric", "split", "nearest", "blend_half"})
     EXPECT_EQ(filters.count(name), 1u) << name;
   EXPECT_EQ(std::set(energies.begin(), energies.end()).size(), energies.size());
   EXPECT_EQ(std::set(filters.begin(), filters.end()).size(), filters.size());

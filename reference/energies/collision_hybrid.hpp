@@ -40,9 +40,9 @@ struct HybridEdgeEdge {
     return IsSigned(EdgeEdge::EdgesOf(x)) || UnsignedFrozenEdgeEdge::InDomain(x, p);
   }
   template <class T>
-  static double Conditioning(const T* x, const T* p) {
-    return IsSigned(EdgeEdge::EdgesOf(x)) ? Signed<EdgeEdge>::Conditioning(x, p)
-                                          : UnsignedFrozenEdgeEdge::Conditioning(x, p);
+  static double Conditioning(const T* x, const T* p, const T& margin) {
+    return IsSigned(EdgeEdge::EdgesOf(x)) ? Signed<EdgeEdge>::Conditioning(x, p, margin)
+                                          : UnsignedFrozenEdgeEdge::Conditioning(x, p, margin);
   }
 
  private:
@@ -58,5 +58,7 @@ struct HybridEdgeEdge {
 };
 
 DEFINITE_REFERENCE_ENERGY(PenaltyOf<HybridEdgeEdge, Quadratic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<HybridEdgeEdge, Cubic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<HybridEdgeEdge, LogBarrier>);
 
 }  // namespace definite::reference

@@ -20,11 +20,11 @@ struct Signed {
 
   template <class S, class T>
   static S Length(const S* x, const T* p) {
-    return Turned(AlongNormal(Stencil::EdgesOf(x)), p[2]);
+    return OnSide(AlongNormal(Stencil::EdgesOf(x)), p[2]);
   }
   template <class S, class T>
   static S FrameLength(const S* c, const T*, const T* p) {
-    return Turned(AlongNormal(FrameEdges(c)), p[2]);
+    return OnSide(AlongNormal(FrameEdges(c)), p[2]);
   }
   template <class S, class T>
   static auto FrameAt(const S* x, const T* at, const T*) {
@@ -35,18 +35,17 @@ struct Signed {
     return SpanPlane(Stencil::EdgesOf(x));
   }
   template <class T>
-  static double Conditioning(const T* x, const T*) {
-    return SineOfEdges(Stencil::EdgesOf(x));
-  }
-
- private:
-  template <class S, class T>
-  static S Turned(const S& l, const T& side) {
-    return side < 0 ? -l : l;
+  static double Conditioning(const T* x, const T*, const T& margin) {
+    const Edges<T> e = Stencil::EdgesOf(x);
+    return SineOfEdges(e) * Nearness(margin, e);
   }
 };
 
 DEFINITE_REFERENCE_ENERGY(PenaltyOf<Signed<VertexFace>, Quadratic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<Signed<VertexFace>, Cubic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<Signed<VertexFace>, LogBarrier>);
 DEFINITE_REFERENCE_ENERGY(PenaltyOf<Signed<EdgeEdge>, Quadratic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<Signed<EdgeEdge>, Cubic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<Signed<EdgeEdge>, LogBarrier>);
 
 }  // namespace definite::reference

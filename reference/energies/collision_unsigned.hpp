@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -21,13 +22,17 @@ struct UnsignedVertexFace {
   template <class S, class T>
   static S Length(const S* x, const T* p) {
     const S u = Distance(VertexFace::EdgesOf(x));
-    return GivenSide(PlainEdgesOf<VertexFace>(x), p[2]) < 0 ? -u : u;
+    return OnSide(u, GivenSide(PlainEdgesOf<VertexFace>(x), p[2]));
   }
-  // |c2|, which needs the remainder (Shi & Kim 2023, Eq. 17).
+  // The length is |c2|, a minimum over the weights (Shi & Kim 2023, Eq. 17); to first order nothing
+  // is lost by freezing them.
   template <class S, class T>
   static S FrameLength(const S* c, const T* at, const T* p) {
-    const S u = Norm(FrameEdges(c).e2);
-    return GivenSide(VertexFace::EdgesOf(at), p[2]) < 0 ? -u : u;
+    return OnSide(LinearNorm(FrameEdges(c).e2), GivenSide(VertexFace::EdgesOf(at), p[2]));
+  }
+  template <class S, class T>
+  static S RemainderLength(const S* c, const T* at, const T* p) {
+    return OnSide(Norm(FrameEdges(c).e2), GivenSide(VertexFace::EdgesOf(at), p[2]));
   }
   template <class S, class T>
   static auto FrameAt(const S* x, const T* at, const T*) {
@@ -43,9 +48,9 @@ struct UnsignedVertexFace {
     return SpanPlane(e) && Distance(e) > 0;
   }
   template <class T>
-  static double Conditioning(const T* x, const T*) {
+  static double Conditioning(const T* x, const T*, const T& margin) {
     const Edges<T> e = VertexFace::EdgesOf(x);
-    return SineOfEdges(e) * Nearness(Distance(e), e);
+    return SineOfEdges(e) * Nearness(std::min(Distance(e), margin), e);
   }
 
  private:
@@ -68,15 +73,12 @@ struct UnsignedEdgeEdge {
   template <class S, class T>
   static S Length(const S* x, const T* p) {
     const Edges<T> plain = PlainEdgesOf<EdgeEdge>(x);
-    const ClosestPoints<T> points = FindClosestPoints(plain);
-    const S u = Distance(Involved(EdgeEdge::EdgesOf(x), points), points);
-    return GivenSide(plain, p[2]) < 0 ? -u : u;
+    return OnSide(Distance(EdgeEdge::EdgesOf(x), FindClosestPoints(plain)), GivenSide(plain, p[2]));
   }
   template <class S, class T>
   static S FrameLength(const S* c, const T* at, const T* p) {
     const Edges<T> plain = EdgeEdge::EdgesOf(at);
-    const S u = Distance(FrameEdges(c), FindClosestPoints(plain));
-    return GivenSide(plain, p[2]) < 0 ? -u : u;
+    return OnSide(DistanceOf(FrameEdges(c), FindClosestPoints(plain)), GivenSide(plain, p[2]));
   }
   template <class S, class T>
   static std::array<S, 9> FrameAt(const S* x, const T* at, const T*) {
@@ -92,10 +94,15 @@ struct UnsignedEdgeEdge {
     return HaveLength(EdgeEdge::EdgesOf(x)) && (l < 0 || l > 0);
   }
   template <class T>
-  static double Conditioning(const T* x, const T*) {
+  static double Conditioning(const T* x, const T*, const T& margin) {
     const Edges<T> e = EdgeEdge::EdgesOf(x);
     const ClosestPoints<T> points = FindClosestPoints(e);
-    return points.BothInside() ? SineOfEdges(e) : Nearness(Norm(Between(e, points)), e);
+    return points.BothInside() ? SineOfEdges(e) * Nearness(margin, e)
+                               : Nearness(std::min(Norm(Between(e, points)), margin), e);
+  }
+  template <class S, class T>
+  static S Distance(const Edges<S>& e, const ClosestPoints<T>& points) {
+    return DistanceOf(Involved(e, points), points);
   }
 
  private:
@@ -111,18 +118,21 @@ struct UnsignedEdgeEdge {
     return {none, none, Between(e, points)};
   }
   template <class S, class T>
-  static S Distance(const Edges<S>& c, const ClosestPoints<T>& points) {
+  static S DistanceOf(const Edges<S>& c, const ClosestPoints<T>& points) {
     if (points.BothInside()) {
       const S l = AlongNormal(c);
       return l < 0 ? -l : l;
     }
-    if (points.a_inside || points.b_inside)
-      return Norm(c.e2 - Dot(c.e2, c.e0) / Dot(c.e0, c.e0) * c.e0);
+    if (points.a_inside || points.b_inside) return DistanceToLine(c.e2, c.e0);
     return Norm(c.e2);
   }
 };
 
 DEFINITE_REFERENCE_ENERGY(PenaltyOf<UnsignedVertexFace, Quadratic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<UnsignedVertexFace, Cubic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<UnsignedVertexFace, LogBarrier>);
 DEFINITE_REFERENCE_ENERGY(PenaltyOf<UnsignedEdgeEdge, Quadratic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<UnsignedEdgeEdge, Cubic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<UnsignedEdgeEdge, LogBarrier>);
 
 }  // namespace definite::reference

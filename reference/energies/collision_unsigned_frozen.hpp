@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -23,12 +24,11 @@ struct UnsignedFrozenEdgeEdge {
   static S Length(const S* x, const T* p) {
     const Edges<T> plain = PlainEdgesOf<EdgeEdge>(x);
     const S u = Norm(Between(EdgeEdge::EdgesOf(x), FindClosestPoints(plain)));
-    return GivenSide(plain, p[2]) < 0 ? -u : u;
+    return OnSide(u, GivenSide(plain, p[2]));
   }
   template <class S, class T>
   static S FrameLength(const S* c, const T* at, const T* p) {
-    const S u = Norm(FrameEdges(c).e2);
-    return GivenSide(EdgeEdge::EdgesOf(at), p[2]) < 0 ? -u : u;
+    return OnSide(Norm(FrameEdges(c).e2), GivenSide(EdgeEdge::EdgesOf(at), p[2]));
   }
   template <class S, class T>
   static std::array<S, 9> FrameAt(const S* x, const T* at, const T*) {
@@ -41,14 +41,16 @@ struct UnsignedFrozenEdgeEdge {
     return HaveLength(EdgeEdge::EdgesOf(x)) && (l < 0 || l > 0);
   }
   template <class T>
-  static double Conditioning(const T* x, const T*) {
+  static double Conditioning(const T* x, const T*, const T& margin) {
     const Edges<T> e = EdgeEdge::EdgesOf(x);
     const ClosestPoints<T> points = FindClosestPoints(e);
-    const double nearness = Nearness(Norm(Between(e, points)), e);
+    const double nearness = Nearness(std::min(Norm(Between(e, points)), margin), e);
     return points.BothInside() ? SineOfEdges(e) * nearness : nearness;
   }
 };
 
 DEFINITE_REFERENCE_ENERGY(PenaltyOf<UnsignedFrozenEdgeEdge, Quadratic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<UnsignedFrozenEdgeEdge, Cubic>);
+DEFINITE_REFERENCE_ENERGY(PenaltyOf<UnsignedFrozenEdgeEdge, LogBarrier>);
 
 }  // namespace definite::reference
