@@ -35,6 +35,7 @@ struct PackedSym {
 enum class Set {
   kFrame,    // of the paper's reduced frame, in a form that is stable everywhere in the domain
   kPrinted,  // of the reduced frame, by the formulas as printed
+  kSplit,    // orthogonal in x but for the curvature's
   kExact,    // the one whose sum cancels least; for most energies the frame's
 };
 
@@ -193,6 +194,8 @@ struct EnergyRow {
   std::span<const Parameter> parameters;
   // Permutations of the vertices that leave the energy unchanged, `dofs / dimension` entries each.
   std::span<const int> relabellings;
+  // Of an energy that is defined on one side only: the permutation that leads there from the other.
+  std::span<const int> mirror;
   int dimension;          // coordinates of a vertex
   TileFunction value;     // 1 number
   TileFunction gradient;  // dofs numbers

@@ -59,9 +59,10 @@ DEFINITE_INLINE void ForTiles(const double* x, const double* p, double* out, lon
 #pragma GCC unroll 16
       for (int i = 0; i < E::kParams; ++i) ps[i] = Tile::Load(p + (t * E::kParams + i) * kW + w);
       double* tile = out + t * kOutputs * kW + w;
-      compute(xs, ps, [tile](int i, const T& value) __attribute__((always_inline)) {
-        Tile::Store(value, tile + i * kW);
-      });
+      compute(
+          xs, ps, [tile](int i, const T& value) __attribute__((always_inline)) {
+            Tile::Store(value, tile + i * kW);
+          });
     }
   }
 }
@@ -69,11 +70,10 @@ DEFINITE_INLINE void ForTiles(const double* x, const double* p, double* out, lon
 template <class E, class F, class Tile>
 void RunFilter(const double* x, const double* p, double* out, long tiles) {
   constexpr int kSize = PackedSym<typename Tile::Value, E::kDofs>::kSize;
-  ForTiles<E, Tile, kSize>(x, p, out, tiles,
-                           [](const auto& xs, const auto& ps, auto store)
-                               __attribute__((always_inline)) {
-                                 ForPacked(F::template Apply<E>(xs, ps), store);
-                               });
+  ForTiles<E, Tile, kSize>(
+      x, p, out, tiles,
+      [](const auto& xs, const auto& ps, auto store)
+          __attribute__((always_inline)) { ForPacked(F::template Apply<E>(xs, ps), store); });
 }
 
 template <class E>
@@ -86,6 +86,7 @@ EnergyRow MakeEnergy() {
   row.dofs = E::kDofs;
   row.parameters = E::kParameters;
   row.relabellings = Stencil::kRelabellings;
+  if constexpr (requires { E::kMirror; }) row.mirror = E::kMirror;
   row.dimension = Stencil::kDimension;
   row.value = [](const double* x, const double* p, double* out, long tiles) {
     ForTiles<E, ScalarTile, 1>(x, p, out, tiles, [](const auto& xs, const auto& ps, auto store) {
@@ -94,10 +95,10 @@ EnergyRow MakeEnergy() {
   };
   row.gradient = [](const double* x, const double* p, double* out, long tiles) {
     ForTiles<E, ScalarTile, E::kDofs>(x, p, out, tiles,
-                                  [](const auto& xs, const auto& ps, auto store) {
-                                    const Vec<double, E::kDofs> g = E::Gradient(xs, ps);
-                                    for (int i = 0; i < E::kDofs; ++i) store(i, g[i]);
-                                  });
+                                      [](const auto& xs, const auto& ps, auto store) {
+                                        const Vec<double, E::kDofs> g = E::Gradient(xs, ps);
+                                        for (int i = 0; i < E::kDofs; ++i) store(i, g[i]);
+                                      });
   };
   row.classify = [](const double* x, const double* p, double* out, long tiles) {
     ForTiles<E, ScalarTile, 3>(x, p, out, tiles, [](const auto& xs, const auto& ps, auto store) {

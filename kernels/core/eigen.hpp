@@ -23,7 +23,7 @@ PackedSym<double, N> MapEigenvalues(const PackedSym<double, N>& h, EigenvalueMap
 
 // map^T (sum_m lambda[m] v[m] v[m]^T) map, one outer product after the other and then the products
 // of the reduced frame, as one writes them in Eigen. Where `eigenvalues` is given, the eigenvalues
-// of the sum are mapped first. F x D: 9 x 12.
+// of the sum are mapped first. F x D: 3 x 6, 6 x 9, 9 x 12.
 template <int F, int D>
 PackedSym<double, D> PullBackInEigen(const double* lambda, const Vec<double, F>* v, int count,
                                      const double (&map)[F][D], EigenvalueMap eigenvalues) {

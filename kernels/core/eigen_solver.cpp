@@ -1,7 +1,7 @@
+#include "kernels/core/eigen_solver.hpp"
+
 #include <Eigen/Dense>
 #include <limits>
-
-#include "kernels/core/eigen_solver.hpp"
 
 namespace definite {
 
@@ -56,6 +56,10 @@ void PullBack(const double* lambda, const double* modes, int count, const double
 template void MapEigenvalues<6>(const double*, EigenvalueMap, double*);
 template void MapEigenvalues<9>(const double*, EigenvalueMap, double*);
 template void MapEigenvalues<12>(const double*, EigenvalueMap, double*);
+template void PullBack<3, 6>(const double*, const double*, int, const double*, EigenvalueMap,
+                             double*);
+template void PullBack<6, 9>(const double*, const double*, int, const double*, EigenvalueMap,
+                             double*);
 template void PullBack<9, 12>(const double*, const double*, int, const double*, EigenvalueMap,
                               double*);
 

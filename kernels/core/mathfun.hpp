@@ -44,10 +44,15 @@ T Abs(const T& a) {
   return abs(a);
 }
 
-// The larger of two numbers; b where either is NaN.
+// The larger and the smaller of two numbers; b where either is NaN.
 template <class T>
 DEFINITE_INLINE T Max(const T& a, const T& b) {
   return Select(a > b, a, b);
+}
+
+template <class T>
+DEFINITE_INLINE T Min(const T& a, const T& b) {
+  return Select(a < b, a, b);
 }
 
 // 2^(1-e) for positive normal m in [2^e, 2^(e+1)), so that m times it lies in [2, 4). The offset

@@ -4,28 +4,77 @@
 // make sense are listed in the collision_*.hpp beside this file.
 //
 // Source: Shi & Kim 2023: frames and modes in lengths/, psi in penalties/.
-// Parameters: k (stiffness), eps (activation distance, a length), side (see each length).
+// Parameters: k (stiffness), eps (activation distance, a length), side (see each length), then the
+// penalty's own.
 // Domain: that of the length. Inactive where l >= eps.
 // Bound: the Hessian's conditioned rounding is at most 50 (docs/protocol.md, section 1).
 
+#include <array>
+#include <span>
 #include <string>
 #include <tuple>
 
 #include "kernels/lengths/collision_frame.hpp"
+#include "kernels/lengths/collision_nearest.hpp"
+#include "kernels/penalties/penalty.hpp"
 #include "kernels/registry.hpp"
 
 namespace definite {
+
+// k, eps, side, then the length's own and the penalty's own.
+template <class Penalty, std::size_t kOwn = 0>
+constexpr auto CollisionParameters(std::string_view side,
+                                   const std::array<Parameter, kOwn>& own = {}) {
+  std::array<Parameter, 3 + kOwn + Penalty::kParameters.size()> all = {
+      Parameter{"k", 1.0, Penalty::kStiffnessPower, "stiffness"},
+      Parameter{"eps", 1.0, 1, "activation distance"},
+      Parameter{"side", 0.0, 0, side},
+  };
+  std::size_t at = 3;
+  for (const Parameter& parameter : own) all[at++] = parameter;
+  for (const Parameter& parameter : Penalty::kParameters) all[at++] = parameter;
+  return all;
+}
+
+// Those that psi takes, k, eps and the penalty's own: as given, and in the frame's unit of length.
+template <class Penalty, std::size_t kOwn>
+struct PenaltyParameters {
+  static constexpr int kCount = 2 + static_cast<int>(Penalty::kParameters.size());
+
+  template <class T, int kAll>
+  static DEFINITE_INLINE Vec<T, kCount> AsGiven(const Vec<T, kAll>& p) {
+    Vec<T, kCount> q;
+#pragma GCC unroll 4
+    for (int i = 0; i < kCount; ++i) q[i] = p[i < 2 ? i : i + 1 + static_cast<int>(kOwn)];
+    return q;
+  }
+  template <class F, class T, int kAll>
+  static DEFINITE_INLINE Vec<T, kCount> InUnits(const F& f, const Vec<T, kAll>& p) {
+    constexpr auto kParameters = CollisionParameters<Penalty>({});
+    Vec<T, kCount> q = AsGiven(p);
+#pragma GCC unroll 4
+    for (int i = 0; i < kCount; ++i) {
+      const int power = kParameters[static_cast<std::size_t>(i < 2 ? i : i + 1)].length_power;
+      if (power < 0) q[i] = f.FromUnits(q[i]);
+      for (int k = 0; k < power; ++k) q[i] = f.InUnits(q[i]);
+    }
+    return q;
+  }
+};
 
 template <class Length, class Penalty>
 struct Collision {
   using Stencil = typename Length::Stencil;
   static constexpr int kDofs = Stencil::kDofs;
-  static constexpr int kParams = 3;
-  static constexpr Parameter kParameters[] = {
-      {"k", 1.0, 0, "stiffness"},
-      {"eps", 1.0, 1, "activation distance"},
-      {"side", 0.0, 0, Length::kSide},
-  };
+  static constexpr auto kParameters = CollisionParameters<Penalty>(Length::kSide);
+  static constexpr int kParams = static_cast<int>(kParameters.size());
+  static constexpr std::span<const int> kMirror = [] {
+    if constexpr (Penalty::kOneSided && requires { Stencil::kMirror; }) {
+      return std::span<const int>(Stencil::kMirror);
+    } else {
+      return std::span<const int>();
+    }
+  }();
 
   static std::string Name() {
     return "collision/" + std::string(Stencil::kName) + "/" + std::string(Length::kName) + "/" +
@@ -39,34 +88,56 @@ struct Collision {
   static DEFINITE_INLINE T Value(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const auto f = Length::FrameOf(x, p[2]);
     const T l = f.FromUnits(f.l);
-    return Select((l >= p[1]) | f.outside, T(0.0), Penalty::Value(l, p[0], p[1]));
+    const auto q = Arguments::AsGiven(p);
+    return Select((l >= p[1]) | f.outside | Penalty::Outside(l, q), T(0.0), Penalty::Value(l, q));
   }
 
   template <class T>
-  static DEFINITE_INLINE Vec<T, kDofs> Gradient(const Vec<T, kDofs>& x,
-                                                const Vec<T, kParams>& p) {
+  static DEFINITE_INLINE Vec<T, kDofs> Gradient(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const auto f = Length::FrameOf(x, p[2]);
-    return Kron(f.FromUnits(Slopes(f, p).psi1) * f.w, f.n);  // Eq. 16
+    return Kron(f.FromUnits(SlopesAt(f, p).psi1) * f.w, f.n);  // Eq. 16
   }
 
   template <class T>
   static DEFINITE_INLINE Classification<T> Classify(const Vec<T, kDofs>& x,
                                                     const Vec<T, kParams>& p) {
     const auto f = Length::FrameOf(x, p[2]);
-    return {Select((f.l >= f.InUnits(p[1])) | f.outside, T(0.0), T(1.0)),
-            Select(f.outside, T(0.0), T(1.0)), f.region};
+    const auto q = Arguments::InUnits(f, p);
+    const auto outside = f.outside | Penalty::Outside(f.l, q);
+    return {Select((f.l >= q[1]) | outside, T(0.0), T(1.0)), Select(outside, T(0.0), T(1.0)),
+            f.region};
   }
 
   template <Set kSet, Part kPart, class T>
-    requires(kSet != Set::kPrinted || requires { &Length::template PrintedFrameOf<T>; })
-  static DEFINITE_INLINE auto HessianModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
+  requires(kSet != Set::kPrinted || requires {
+    &Length::template PrintedFrameOf<T>;
+  }) static DEFINITE_INLINE auto HessianModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     if constexpr (kSet == Set::kPrinted) {
       const auto f = Length::PrintedFrameOf(x, p[2]);
-      const auto slopes = Slopes(f.l, p[0], p[1], f.l >= p[1]);
+      const auto q = Arguments::AsGiven(p);
+      const auto slopes = SlopesAt(f.l, q, (f.l >= q[1]) | Penalty::Outside(f.l, q));
       return Length::PrintedModes(f, slopes.psi1, slopes.psi2);
     } else {
-      const auto f = Length::FrameOf(x, p[2]);
-      return PullBack(f, ModesOf<kSet, kPart>(f, Slopes(f, p)));
+      auto f = Length::FrameOf(x, p[2]);
+      const auto slopes = SlopesAt(f, p);
+      if constexpr (kSet == Set::kSplit) {
+        f = TurnedInX<Length::kTangents, Length::kGramDeterminant>(f);
+      }
+      return PullBack(f, ModesOf<kSet, kPart>(f, slopes));
+    }
+  }
+
+  // The modes of the nearest PSD matrix.
+  template <class T>
+  static DEFINITE_INLINE auto NearestModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
+    const auto f = TurnedInX<Length::kTangents, Length::kGramDeterminant>(Length::FrameOf(x, p[2]));
+    const auto slopes = SlopesAt(f, p);
+    if constexpr (Length::kTangents.of[0] == Tangent::kFixed) {
+      // All modes are orthogonal already.
+      return MapModes(PullBack(f, ModesOf<Set::kSplit, Part::kPositive>(f, slopes)),
+                      [](const T& l) { return Select(l < T(0.0), T(0.0), l); });
+    } else {
+      return definite::NearestModes<Length::kTangents>(f, slopes.psi1, slopes.psi2);
     }
   }
 
@@ -75,32 +146,29 @@ struct Collision {
   template <class T>
   static auto FrameTerms(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const auto f = Length::FrameOf(x, p[2]);
-    const auto slopes = Slopes(f, p);
+    const auto slopes = SlopesAt(f, p);
     if constexpr (kSplits) {
       // psi'/l on both tangents; the second term has the opposite sign and the map D.
-      const auto first = PairModes<Part::kAll, Tangents::kFixed>(f, slopes.psi1, slopes.psi2);
-      const auto second = PairModes<Part::kAll, Tangents::kFixed>(f, -slopes.psi1, T(0.0));
-      auto terms = std::tuple(FrameTerm<T, 9, kDofs, 3>{InFrame(f, first), {}},
-                              FrameTerm<T, 9, kDofs, 3>{InFrame(f, second), {}});
-      FrameMap(f, std::get<0>(terms).map);
+      const auto first = PairModes<Part::kAll, kBothFixed>(f, slopes.psi1, slopes.psi2);
+      const auto second = PairModes<Part::kAll, kBothFixed>(f, -slopes.psi1, T(0.0));
+      auto terms = std::tuple(ToFrameTerm(f, first), ToFrameTerm(f, second));
       Length::Remainder(x, f.outside, std::get<1>(terms).map);
       return terms;
     } else {
-      const auto modes = ModesOf<Set::kFrame, Part::kAll>(f, slopes);
-      FrameTerm<T, 9, kDofs, std::size(decltype(modes.mode){})> term{InFrame(f, modes), {}};
-      FrameMap(f, term.map);
-      return std::tuple(term);
+      return std::tuple(ToFrameTerm(f, ModesOf<Set::kFrame, Part::kAll>(f, slopes)));
     }
   }
 
  private:
+  using Arguments = PenaltyParameters<Penalty, 0>;
+
   // A length whose frame set is not its pairs of free modes.
-  static constexpr bool kSplits = requires(CollisionFrame<double> f) {
+  static constexpr bool kSplits = requires(CollisionFrame<double, 4, 2> f) {
     Length::template SplitModes<Part::kAll>(f, 0.0, 0.0);
   };
 
-  template <Set kSet, Part kPart, class T, class S>
-  static DEFINITE_INLINE auto ModesOf(const CollisionFrame<T>& f, const S& slopes) {
+  template <Set kSet, Part kPart, class F, class S>
+  static DEFINITE_INLINE auto ModesOf(const F& f, const S& slopes) {
     if constexpr (kSet == Set::kFrame && kSplits) {
       return Length::template SplitModes<kPart>(f, slopes.psi1, slopes.psi2);
     } else {
@@ -108,29 +176,17 @@ struct Collision {
     }
   }
 
-  // S, Eq. 19.
-  template <class T>
-  static void FrameMap(const CollisionFrame<T>& f, T (&map)[9][12]) {
-    const Vec<T, 4> rows[3] = {f.rows[0], f.rows[1], f.w};
-    for (int slot = 0; slot < 3; ++slot) {
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 12; ++j) map[3 * slot + i][j] = j % 3 == i ? rows[slot][j / 3] : T(0.0);
-      }
-    }
-  }
-
   // psi'/unit and psi'', zero where the energy does not act.
-  template <class T>
-  static DEFINITE_INLINE auto Slopes(const CollisionFrame<T>& f, const Vec<T, kParams>& p) {
-    const T eps = f.InUnits(p[1]);
-    return Slopes(f.l, p[0], eps, (f.l >= eps) | f.outside);
+  template <class F, class T>
+  static DEFINITE_INLINE Slopes<T> SlopesAt(const F& f, const Vec<T, kParams>& p) {
+    const auto q = Arguments::InUnits(f, p);
+    return SlopesAt(f.l, q, (f.l >= q[1]) | f.outside | Penalty::Outside(f.l, q));
   }
   template <class T>
-  static DEFINITE_INLINE auto Slopes(const T& l, const T& k, const T& eps, const MaskOf<T>& idle) {
-    auto slopes = Penalty::Derivatives(l, k, eps);
-    slopes.psi1 = Select(idle, T(0.0), slopes.psi1);
-    slopes.psi2 = Select(idle, T(0.0), slopes.psi2);
-    return slopes;
+  static DEFINITE_INLINE Slopes<T> SlopesAt(const T& l, const Vec<T, Arguments::kCount>& q,
+                                            const MaskOf<T>& idle) {
+    const Slopes<T> slopes = Penalty::Derivatives(l, q);
+    return {Select(idle, T(0.0), slopes.psi1), Select(idle, T(0.0), slopes.psi2)};
   }
 };
 

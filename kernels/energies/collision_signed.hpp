@@ -4,6 +4,8 @@
 
 #include "kernels/energies/collision.hpp"
 #include "kernels/lengths/signed.hpp"
+#include "kernels/penalties/cubic.hpp"
+#include "kernels/penalties/log_barrier.hpp"
 #include "kernels/penalties/quadratic.hpp"
 #include "kernels/stencils/edge_edge.hpp"
 #include "kernels/stencils/vertex_face.hpp"
@@ -11,6 +13,10 @@
 namespace definite {
 
 DEFINITE_ENERGY(Collision<Signed<VertexFace>, Quadratic>);
+DEFINITE_ENERGY(Collision<Signed<VertexFace>, Cubic>);
+DEFINITE_ENERGY(Collision<Signed<VertexFace>, LogBarrier>);
 DEFINITE_ENERGY(Collision<Signed<EdgeEdge>, Quadratic>);
+DEFINITE_ENERGY(Collision<Signed<EdgeEdge>, Cubic>);
+DEFINITE_ENERGY(Collision<Signed<EdgeEdge>, LogBarrier>);
 
 }  // namespace definite

@@ -53,8 +53,8 @@ struct StrandBend {
   }
 
   template <Set kSet, Part kPart, class T>
-    requires(kSet != Set::kPrinted)
-  static DEFINITE_INLINE auto HessianModes(const Vec<T, 9>& x, const Vec<T, 2>& p) {
+  requires(kSet == Set::kFrame || kSet == Set::kExact) static DEFINITE_INLINE
+      auto HessianModes(const Vec<T, 9>& x, const Vec<T, 2>& p) {
     const Frame<T> f = FrameOf(x);
     const T mu = Select(f.outside, T(0.0), p[0]);
     if constexpr (kPart == Part::kCurvature) {
@@ -91,8 +91,8 @@ struct StrandBend {
   template <class T>
   struct Frame {
     MaskOf<T> outside;
-    Vec3<T> t0, t1, n, b0, b1;  // unit tangents; normal of the plane; b_i = t_i x n
-    T inverse0, inverse1;       // 1/|e0|, 1/|e1|
+    Vec3<T> t0, t1, n, b0, b1;    // unit tangents; normal of the plane; b_i = t_i x n
+    T inverse0, inverse1;         // 1/|e0|, 1/|e1|
     T omega, tan_half, cot_half;  // of theta / 2
   };
 
@@ -144,8 +144,7 @@ struct StrandBend {
 
   // (u / |e0|; v / |e1|) from the edges to the vertices.
   template <class T>
-  static DEFINITE_INLINE Vec<T, 9> PullBack(const Frame<T>& f, const Vec3<T>& u,
-                                            const Vec3<T>& v) {
+  static DEFINITE_INLINE Vec<T, 9> PullBack(const Frame<T>& f, const Vec3<T>& u, const Vec3<T>& v) {
     Vec<T, 9> r;
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {

@@ -20,7 +20,7 @@ struct AbsoluteNumeric {
   static constexpr std::array<Exemption, 0> kExempt{};
 
   template <class E, class T>
-    requires std::same_as<T, double>
+  requires std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     return MapEigenvalues(ToPacked(None::Apply<E>(x, p)),
                           [](double lambda) { return std::abs(lambda); });

@@ -36,17 +36,16 @@ struct ClosestEdges {
       : kKind == Clamped::kFrozen ? "Shi & Kim 2023, Eqs. 25, 36-48, 53"
                                   : "Shi & Kim 2023, section 5.2.1 after Cheng et al. 2022";
   static constexpr std::string_view kSide =
-      kKind == Clamped::kHybrid
-          ? "sign of the triple product: -1 flips it, +1 and 0 keep it"
-          : "+1 outside, -1 penetrating, 0 by the sign of the triple product";
-  static constexpr Tangents kTangents =
-      kKind == Clamped::kFrozen ? Tangents::kFixed : Tangents::kByRegion;
+      kKind == Clamped::kHybrid ? "sign of the triple product: -1 flips it, +1 and 0 keep it"
+                                : "+1 outside, -1 penetrating, 0 by the sign of the triple product";
+  static constexpr Tangents kTangents = kKind == Clamped::kFrozen ? kBothFixed : kBothByRegion;
+  static constexpr int kGramDeterminant = Stencil::kGramDeterminant;
 
   template <class T>
-  static DEFINITE_INLINE CollisionFrame<T> FrameOf(const Vec<T, 12>& x, const T& side) {
-    CollisionFrame<T> f;
+  static DEFINITE_INLINE CollisionFrame<T, 4, 2> FrameOf(const Vec<T, 12>& x, const T& side) {
+    CollisionFrame<T, 4, 2> f;
     Edges<T> edges = Stencil::EdgesOf(x);
-    Prescale(edges, f);
+    Prescale(f, edges);
     const Plane<T> plane = PlaneOf(edges);
     const T triple = Select(plane.parallel, T(0.0), Dot(plane.normal, edges.e2));
     const T sign = Select(triple < T(0.0), T(-1.0), T(1.0));
@@ -68,13 +67,13 @@ struct ClosestEdges {
     T a, b;           // parameters of the closest points
     Vec3<T> between;  // from edge A to edge B
     T squared;
-    T free;           // 1 if the point on the other edge is inside it
+    T free;  // 1 if the point on the other edge is inside it
   };
 
   // Vertex at parameter a of A against B.
   template <class T>
-  static DEFINITE_INLINE Candidate<T> AgainstB(const Edges<T>& e, const Vec3<T>& from,
-                                               const T& a, const T& inverse_bb) {
+  static DEFINITE_INLINE Candidate<T> AgainstB(const Edges<T>& e, const Vec3<T>& from, const T& a,
+                                               const T& inverse_bb) {
     const T b = -(Dot(from, e.e1) * inverse_bb);
     Candidate<T> c = Clamp(b, a);
     c.between = from + c.b * e.e1;
@@ -83,8 +82,8 @@ struct ClosestEdges {
   }
   // Vertex at parameter b of B against A.
   template <class T>
-  static DEFINITE_INLINE Candidate<T> AgainstA(const Edges<T>& e, const Vec3<T>& from,
-                                               const T& b, const T& inverse_aa) {
+  static DEFINITE_INLINE Candidate<T> AgainstA(const Edges<T>& e, const Vec3<T>& from, const T& b,
+                                               const T& inverse_aa) {
     const T a = Dot(from, e.e0) * inverse_aa;
     Candidate<T> c = Clamp(a, b);
     std::swap(c.a, c.b);
@@ -106,19 +105,18 @@ struct ClosestEdges {
   // Replaces the frame, where `endpoint`, by that of the nearest vertex.
   template <class T>
   static DEFINITE_INLINE void SetEndpoint(const Edges<T>& edges, const T& s,
-                                          const MaskOf<T>& endpoint, CollisionFrame<T>& f) {
+                                          const MaskOf<T>& endpoint, CollisionFrame<T, 4, 2>& f) {
     const auto& [e0, e1, e2] = edges;
     T aa = Dot(e0, e0), bb = Dot(e1, e1);
-    const auto no_edge = (aa <= T(kLeastLength * kLeastLength)) |
-                         (bb <= T(kLeastLength * kLeastLength));
+    const auto no_edge =
+        (aa <= T(kLeastLength * kLeastLength)) | (bb <= T(kLeastLength * kLeastLength));
     aa = Select(no_edge, T(1.0), aa);
     bb = Select(no_edge, T(1.0), bb);
     const T inverse_a = T(1.0) / Sqrt(aa), inverse_b = T(1.0) / Sqrt(bb);
     const T inverse_aa = inverse_a * inverse_a, inverse_bb = inverse_b * inverse_b;
-    const Candidate<T> candidates[4] = {AgainstB(edges, e2, T(0.0), inverse_bb),
-                                        AgainstB(edges, e2 - e0, T(1.0), inverse_bb),
-                                        AgainstA(edges, e2, T(0.0), inverse_aa),
-                                        AgainstA(edges, e2 + e1, T(1.0), inverse_aa)};
+    const Candidate<T> candidates[4] = {
+        AgainstB(edges, e2, T(0.0), inverse_bb), AgainstB(edges, e2 - e0, T(1.0), inverse_bb),
+        AgainstA(edges, e2, T(0.0), inverse_aa), AgainstA(edges, e2 + e1, T(1.0), inverse_aa)};
     Candidate<T> best = candidates[0];
     T on_a = T(0.0);  // 1 if the free edge is A
 #pragma GCC unroll 3
@@ -142,15 +140,12 @@ struct ClosestEdges {
     const Vec3<T> n = (s / u) * best.between;
 
     const auto is_free = best.free > T(0.0), along_a = on_a > T(0.0);
-    // Along the free edge, else along the axis that is farthest from n; made normal to n.
+    // Along the free edge, else along any axis; made normal to n.
+    const Vec3<T> axis = AxisOff(n);
     Vec3<T> d;
-    const T least = Least(Abs(n[0]), Least(Abs(n[1]), Abs(n[2])));
-    T left = T(1.0);  // only one axis of several
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
-      const T axis = Select(Abs(n[k]) <= least, left, T(0.0));
-      left = left - axis;
-      d[k] = Select(is_free, Select(along_a, inverse_a * e0[k], inverse_b * e1[k]), axis);
+      d[k] = Select(is_free, Select(along_a, inverse_a * e0[k], inverse_b * e1[k]), axis[k]);
     }
     d = d - Dot(d, n) * n;
     const Vec3<T> t0 = (T(1.0) / Sqrt(Dot(d, d))) * d;
@@ -183,10 +178,6 @@ struct ClosestEdges {
     }
   }
 
-  template <class T>
-  static DEFINITE_INLINE T Least(const T& a, const T& b) {
-    return Select(a < b, a, b);
-  }
   template <class T, int N>
   static DEFINITE_INLINE Vec<T, N> Blend(const MaskOf<T>& mask, const Vec<T, N>& yes,
                                          const Vec<T, N>& no) {

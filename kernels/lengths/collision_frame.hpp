@@ -14,27 +14,36 @@
 // all: Eq. 25 as it should read.
 // Shapes and units: x in any unit of length; weights of psi; frame rows and tangents free of units.
 
-#include <utility>
-
 #include "kernels/core/precision.hpp"
 #include "kernels/kernel.hpp"
 
 namespace definite {
 
-// Which tangents of a length are free.
-enum class Tangents { kFree, kFixed, kByRegion };
+// Whether a closest point moves along a tangent.
+enum class Tangent { kFree, kFixed, kByRegion };
+// Of both tangents of a length; a fixed one comes last.
+struct Tangents {
+  Tangent of[2];
+};
+inline constexpr Tangents kBothFree{{Tangent::kFree, Tangent::kFree}};
+inline constexpr Tangents kBothFixed{{Tangent::kFixed, Tangent::kFixed}};
+inline constexpr Tangents kFreeAndFixed{{Tangent::kFree, Tangent::kFixed}};
+inline constexpr Tangents kBothByRegion{{Tangent::kByRegion, Tangent::kByRegion}};
 
-template <class T>
+// Of kVertices vertices. The frame coordinates c are kSlots edges, each the partner of a tangent,
+// and then the vector between the closest points.
+template <class T, int kVertices, int kSlots>
 struct CollisionFrame {
-  T scale, lift;         // lengths below are in units of 1 / (scale lift)
-  MaskOf<T> outside;     // not in the domain; the rest is then finite and meaningless
-  T l;                   // the length, with its sign
-  Vec3<T> n;             // grad l = w (x) n, n a unit vector
-  Vec<T, 4> w;           // for a vertex and a face (1, -barycentric coordinates)
-  Vec3<T> t[2];          // unit tangents, normal to n and to each other
-  Vec<T, 4> rows[2];     // slots 0 and 1 of the frame map
-  T inverse_length[2];   // 1/len of slots 0 and 1
-  MaskOf<T> fixed[2];    // for Tangents::kByRegion
+  static constexpr int kCoordinates = 3 * (kSlots + 1), kDofs = 3 * kVertices;
+  T scale, lift;              // lengths below are in units of 1 / (scale lift)
+  MaskOf<T> outside;          // not in the domain; the rest is then finite and meaningless
+  T l;                        // the length, with its sign
+  Vec3<T> n;                  // grad l = w (x) n, n a unit vector
+  Vec<T, kVertices> w;        // for a vertex and a face (1, -barycentric coordinates)
+  Vec3<T> t[2];               // unit tangents, normal to n and to each other
+  Vec<T, kVertices> rows[2];  // the slots of the frame map: an edge in terms of the vertices
+  T inverse_length[2];        // 1/len of the slots
+  MaskOf<T> fixed[2];         // for Tangent::kByRegion
   T region;
 
   DEFINITE_INLINE T InUnits(const T& length) const { return length * lift * scale; }
@@ -43,19 +52,25 @@ struct CollisionFrame {
 
 // Edges in units of a power of two near their largest component, so that nothing overflows on the
 // way: components are at most 4, and the largest at least 2.
-template <class T>
-DEFINITE_INLINE void Prescale(Edges<T>& edges, CollisionFrame<T>& f) {
-  auto& [e0, e1, e2] = edges;
+template <class Frame, class T, class... Edge>
+DEFINITE_INLINE void Prescale(Frame& f, Vec3<T>& first, Edge&... others) {
   T largest[3];  // of each coordinate; a chain of nine would be the longest path of the kernel
 #pragma GCC unroll 3
-  for (int i = 0; i < 3; ++i) largest[i] = Max(Max(Abs(e0[i]), Abs(e1[i])), Abs(e2[i]));
+  for (int i = 0; i < 3; ++i) {
+    largest[i] = Abs(first[i]);
+    ((largest[i] = Max(largest[i], Abs(others[i]))), ...);
+  }
   const T magnitude = Max(Max(largest[0], largest[1]), largest[2]);
   // Subnormal lengths are lifted first: they have no exponent to read.
   constexpr double kSmallestNormal = 0x1p-1022;
   f.lift = Select(magnitude < T(kSmallestNormal), T(0x1p54), T(1.0));
   f.scale = InversePowerOfTwo(Max(magnitude * f.lift, T(kSmallestNormal)));
-#pragma GCC unroll 3
-  for (Vec3<T>* e : {&e0, &e1, &e2}) *e = f.scale * (f.lift * *e);
+  first = f.scale * (f.lift * first);
+  ((others = f.scale * (f.lift * others)), ...);
+}
+template <class Frame, class T>
+DEFINITE_INLINE void Prescale(Frame& f, Edges<T>& edges) {
+  Prescale(f, edges.e0, edges.e1, edges.e2);
 }
 
 // The plane of e0 and e1.
@@ -73,8 +88,7 @@ DEFINITE_INLINE Plane<T> PlaneOf(const Edges<T>& edges) {
   Plane<T> plane;
   const Vec3<T> c = Cross(e0, e1);
   T area2 = Dot(c, c), aa = Dot(e0, e0);
-  plane.parallel =
-      area2 <= Max(T(kTau * kTau) * (aa * Dot(e1, e1)), T(kLeastArea * kLeastArea));
+  plane.parallel = area2 <= Max(T(kTau * kTau) * (aa * Dot(e1, e1)), T(kLeastArea * kLeastArea));
   area2 = Select(plane.parallel, T(1.0), area2);
   aa = Select(plane.parallel, T(1.0), aa);
   const T area = Sqrt(area2), a = Sqrt(aa);
@@ -91,10 +105,24 @@ DEFINITE_INLINE Plane<T> PlaneOf(const Edges<T>& edges) {
   return plane;
 }
 
+// The axis that is farthest from n.
+template <class T>
+DEFINITE_INLINE Vec3<T> AxisOff(const Vec3<T>& n) {
+  const T least = Min(Abs(n[0]), Min(Abs(n[1]), Abs(n[2])));
+  Vec3<T> axis;
+  T left = T(1.0);  // only one of several
+#pragma GCC unroll 3
+  for (int k = 0; k < 3; ++k) {
+    axis[k] = Select(Abs(n[k]) <= least, left, T(0.0));
+    left = left - axis[k];
+  }
+  return axis;
+}
+
 // A frame in the plane of e0 and e1, whose normal is `sign` times the plane's: both tangents free.
 template <class Stencil, class T>
 DEFINITE_INLINE void SetPlane(const Plane<T>& plane, const Edges<T>& edges, const T& sign,
-                              CollisionFrame<T>& f) {
+                              CollisionFrame<T, 4, 2>& f) {
   f.n = sign * plane.normal;
   f.l = Dot(f.n, edges.e2);
   f.w = Stencil::Row2(plane.beta, plane.gamma);
@@ -107,7 +135,7 @@ DEFINITE_INLINE void SetPlane(const Plane<T>& plane, const Edges<T>& edges, cons
   f.region = T(0.0);
 }
 
-// One mode of the frame: sigma n in `slot` (0 or 1; none if negative) and `tangent` in slot 2.
+// One mode of the frame: sigma n in `slot` (none if negative), `tangent` in the last coordinates.
 template <class T>
 struct FrameMode {
   T lambda;
@@ -120,21 +148,22 @@ struct FrameModes {
   FrameMode<T> mode[K];
 };
 
-// The modes of psi(l): psi'' first, then a kept and a dropped one for each tangent. psi1 is
-// psi'/unit and at most 0 (a penalty only repels).
-template <Part kPart, Tangents kTangents, class T>
-DEFINITE_INLINE auto PairModes(const CollisionFrame<T>& f, const T& psi1, const T& psi2) {
-  // A fixed tangent has one mode, a free one two.
-  constexpr bool kTurns = kTangents != Tangents::kFixed;
-  constexpr bool kBoth = kPart == Part::kAll && kTurns;
-  constexpr int kCount = kPart == Part::kCurvature ? 1 : kBoth ? 5 : 3;
+// The modes of psi(l): psi'' first, then one that is kept for each tangent, then one that is
+// dropped for each that is not fixed. psi1 is psi'/unit and at most 0 (a penalty only repels).
+template <Part kPart, Tangents kTangents, class T, int kVertices, int kSlots>
+DEFINITE_INLINE auto PairModes(const CollisionFrame<T, kVertices, kSlots>& f, const T& psi1,
+                               const T& psi2) {
+  constexpr int kTurning =
+      (kTangents.of[0] != Tangent::kFixed) + (kTangents.of[1] != Tangent::kFixed);
+  constexpr int kCount = kPart == Part::kCurvature ? 1 : kPart == Part::kAll ? 3 + kTurning : 3;
   FrameModes<T, kCount> modes;
   modes.mode[0] = {psi2, -1, T(0.0), f.n};
   if constexpr (kPart != Part::kCurvature) {
 #pragma GCC unroll 2
     for (int i = 0; i < 2; ++i) {
-      T kept, tau, dropped = T(0.0), minus_inverse_tau = T(0.0);
-      if constexpr (kTurns) {
+      const bool turns = kTangents.of[i] != Tangent::kFixed;
+      T kept = T(0.0), tau = T(0.0), dropped = T(0.0), minus_inverse_tau = T(0.0);
+      if (turns) {
         const T half = T(0.5) * f.inverse_length[i];
         const T r = f.l * half;
         const T h = Sqrt(MulAdd(r, r, T(1.0)));
@@ -146,17 +175,16 @@ DEFINITE_INLINE auto PairModes(const CollisionFrame<T>& f, const T& psi1, const 
         tau = Select(r < T(0.0), smaller, larger);
         minus_inverse_tau = -Select(r < T(0.0), larger, smaller);
       }
-      if constexpr (!kTurns) {
+      if (!turns) {
         kept = psi1 / f.l;
-        tau = T(0.0);
-      } else if constexpr (kTangents == Tangents::kByRegion) {
+      } else if (kTangents.of[i] == Tangent::kByRegion) {
         kept = Select(f.fixed[i], psi1 / f.l, kept);
         tau = Select(f.fixed[i], T(0.0), tau);
         dropped = Select(f.fixed[i], T(0.0), dropped);
       }
-      modes.mode[1 + i] = {kept, kTurns ? i : -1, tau, f.t[i]};
-      if constexpr (kBoth) {
-        modes.mode[3 + i] = {dropped, i, minus_inverse_tau, f.t[i]};
+      modes.mode[1 + i] = {kept, turns ? i : -1, tau, f.t[i]};
+      if constexpr (kPart == Part::kAll) {
+        if (turns) modes.mode[3 + i] = {dropped, i, minus_inverse_tau, f.t[i]};
       }
     }
   }
@@ -164,10 +192,10 @@ DEFINITE_INLINE auto PairModes(const CollisionFrame<T>& f, const T& psi1, const 
 }
 
 // In x: q -> S^T q, block j is sigma S_ij n + w_j t.
-template <class T, int K>
-DEFINITE_INLINE Modes<T, 12, K> PullBack(const CollisionFrame<T>& f,
-                                         const FrameModes<T, K>& frame_modes) {
-  Modes<T, 12, K> modes;
+template <class T, int kVertices, int kSlots, int K>
+DEFINITE_INLINE Modes<T, 3 * kVertices, K> PullBack(const CollisionFrame<T, kVertices, kSlots>& f,
+                                                    const FrameModes<T, K>& frame_modes) {
+  Modes<T, 3 * kVertices, K> modes;
 #pragma GCC unroll 8
   for (int m = 0; m < K; ++m) {
     const FrameMode<T>& q = frame_modes.mode[m];
@@ -178,21 +206,83 @@ DEFINITE_INLINE Modes<T, 12, K> PullBack(const CollisionFrame<T>& f,
   return modes;
 }
 
-// In the frame coordinates c: the stacked vector of 9.
-template <class T, int K>
-DEFINITE_INLINE Modes<T, 9, K> InFrame(const CollisionFrame<T>& f,
-                                       const FrameModes<T, K>& frame_modes) {
-  Modes<T, 9, K> modes;
+// A Hessian in the frame coordinates c with the map S to them (Eq. 19): modes as stacked vectors.
+template <class T, int kVertices, int kSlots, int K>
+auto ToFrameTerm(const CollisionFrame<T, kVertices, kSlots>& f,
+                 const FrameModes<T, K>& frame_modes) {
+  using Frame = CollisionFrame<T, kVertices, kSlots>;
+  FrameTerm<T, Frame::kCoordinates, Frame::kDofs, K> term;
   for (int m = 0; m < K; ++m) {
     const FrameMode<T>& q = frame_modes.mode[m];
-    modes.lambda[m] = q.lambda;
+    term.modes.lambda[m] = q.lambda;
     for (int i = 0; i < 3; ++i) {
-      modes.v[m][i] = q.slot == 0 ? q.sigma * f.n[i] : T(0.0);
-      modes.v[m][3 + i] = q.slot == 1 ? q.sigma * f.n[i] : T(0.0);
-      modes.v[m][6 + i] = q.tangent[i];
+      for (int slot = 0; slot < kSlots; ++slot) {
+        term.modes.v[m][3 * slot + i] = q.slot == slot ? q.sigma * f.n[i] : T(0.0);
+      }
+      term.modes.v[m][3 * kSlots + i] = q.tangent[i];
     }
   }
-  return modes;
+  for (int slot = 0; slot <= kSlots; ++slot) {
+    const Vec<T, kVertices>& row = slot < kSlots ? f.rows[slot] : f.w;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < Frame::kDofs; ++j) {
+        term.map[3 * slot + i][j] = j % 3 == i ? row[j / 3] : T(0.0);
+      }
+    }
+  }
+  return term;
+}
+
+// The same geometric term in orthogonal vectors of x: rows and tangents turned so that both rows
+// are orthogonal and as long as w. In general that is the singular value decomposition of the edges
+// over their lengths, rows[i] / len_i. kGramDeterminant: |rows[0]|^2 |rows[1]|^2 - (rows[0] .
+// rows[1])^2, a constant of the stencil.
+// Source: docs/derivations.md, section 1.
+template <Tangents kTangents, int kGramDeterminant, class T, int kVertices, int kSlots>
+DEFINITE_INLINE CollisionFrame<T, kVertices, kSlots> TurnedInX(
+    CollisionFrame<T, kVertices, kSlots> f) {
+  const T width = Sqrt(Dot(f.w, f.w));
+  const T inverse_width = T(1.0) / width;
+  if constexpr (kTangents.of[1] == Tangent::kFixed) {
+    // One free tangent or none: there is nothing to turn.
+    if constexpr (kTangents.of[0] == Tangent::kFree) {
+      const T length = Sqrt(Dot(f.rows[0], f.rows[0]));
+      f.inverse_length[0] = f.inverse_length[0] * length * inverse_width;
+      f.rows[0] = (width / length) * f.rows[0];
+    }
+    return f;
+  } else {
+    T inverse[2] = {f.inverse_length[0], f.inverse_length[1]};
+    if constexpr (kTangents.of[0] == Tangent::kByRegion) {
+      for (int i = 0; i < 2; ++i) inverse[i] = Select(f.fixed[i], T(0.0), inverse[i]);
+    }
+    const Vec<T, kVertices> g0 = inverse[0] * f.rows[0], g1 = inverse[1] * f.rows[1];
+    const T m00 = Dot(g0, g0), m01 = Dot(g0, g1), m11 = Dot(g1, g1);
+    const T half = T(0.5) * (m00 - m11);
+    const T root = Sqrt(MulAdd(half, half, m01 * m01));
+    const T larger2 = T(0.5) * (m00 + m11) + root;  // square of the larger singular value
+    const T area = inverse[0] * inverse[1];
+    const auto nothing = larger2 <= T(0.0), single = area <= T(0.0);
+    const T safe2 = Select(nothing, T(1.0), larger2);
+    const T sigma0 = Sqrt(safe2);
+    // From the determinant, without cancellation.
+    const T sigma1 = Sqrt(T(double{kGramDeterminant}) * (area * area) / safe2);
+    // The larger one belongs to (c, s).
+    const T denominator = Abs(half) + root;
+    const T t = m01 / Select(denominator <= T(0.0), T(1.0), denominator);
+    const T norm = T(1.0) / Sqrt(MulAdd(t, t, T(1.0)));
+    const T product = t * norm;
+    const auto swapped = half < T(0.0);
+    const T c = Select(swapped, product, norm), s = Select(swapped, norm, product);
+    const Vec3<T> t0 = f.t[0];
+    f.t[0] = c * t0 + s * f.t[1];
+    f.t[1] = c * f.t[1] - s * t0;
+    f.rows[0] = (width / sigma0) * (c * g0 + s * g1);
+    f.rows[1] = (width / Select(single, T(1.0), sigma1)) * (c * g1 - s * g0);
+    f.inverse_length[0] = sigma0 * inverse_width;
+    f.inverse_length[1] = sigma1 * inverse_width;
+    return f;
+  }
 }
 
 }  // namespace definite

@@ -23,13 +23,14 @@ struct Signed {
   static constexpr std::string_view kSource = "Shi & Kim 2023, Eqs. 1, 8-13, 16-19";
   static constexpr std::string_view kSide =
       "sign of the length: -1 flips it, +1 and 0 keep the triple product's";
-  static constexpr Tangents kTangents = Tangents::kFree;
+  static constexpr Tangents kTangents = kBothFree;
+  static constexpr int kGramDeterminant = Stencil::kGramDeterminant;
 
   template <class T>
-  static DEFINITE_INLINE CollisionFrame<T> FrameOf(const Vec<T, 12>& x, const T& side) {
-    CollisionFrame<T> f;
+  static DEFINITE_INLINE CollisionFrame<T, 4, 2> FrameOf(const Vec<T, 12>& x, const T& side) {
+    CollisionFrame<T, 4, 2> f;
     Edges<T> edges = Stencil::EdgesOf(x);
-    Prescale(edges, f);
+    Prescale(f, edges);
     const Plane<T> plane = PlaneOf(edges);
     SetPlane<Stencil>(plane, edges, Orientation(side), f);
     f.outside = plane.parallel;

@@ -27,13 +27,14 @@ struct UnsignedPlane {
   static constexpr std::string_view kSource = "Shi & Kim 2023, Eqs. 16, 17, 20, 25, 51, 52";
   static constexpr std::string_view kSide =
       "+1 outside, -1 penetrating, 0 by the sign of the triple product";
-  static constexpr Tangents kTangents = Tangents::kFree;
+  static constexpr Tangents kTangents = kBothFree;
+  static constexpr int kGramDeterminant = Stencil::kGramDeterminant;
 
   template <class T>
-  static DEFINITE_INLINE CollisionFrame<T> FrameOf(const Vec<T, 12>& x, const T& side) {
-    CollisionFrame<T> f;
+  static DEFINITE_INLINE CollisionFrame<T, 4, 2> FrameOf(const Vec<T, 12>& x, const T& side) {
+    CollisionFrame<T, 4, 2> f;
     Edges<T> edges = Stencil::EdgesOf(x);
-    Prescale(edges, f);
+    Prescale(f, edges);
     const Plane<T> plane = PlaneOf(edges);
     const T triple = Dot(plane.normal, edges.e2);
     const T sign = Select(triple < T(0.0), T(-1.0), T(1.0));
@@ -46,7 +47,7 @@ struct UnsignedPlane {
 
   // The frame set: psi'', then what each tangent keeps and drops.
   template <Part kPart, class T>
-  static DEFINITE_INLINE auto SplitModes(const CollisionFrame<T>& f, const T& psi1,
+  static DEFINITE_INLINE auto SplitModes(const CollisionFrame<T, 4, 2>& f, const T& psi1,
                                          const T& psi2) {
     constexpr int kCount = kPart == Part::kCurvature ? 1 : kPart == Part::kPositive ? 3 : 5;
     FrameModes<T, kCount> modes;
@@ -69,9 +70,9 @@ struct UnsignedPlane {
   // D = dc/dx - S, Eq. 20: how the frame weights change. Free of units; zero outside the domain.
   template <class T>
   static void Remainder(const Vec<T, 12>& x, const MaskOf<T>& outside, T (&d)[9][12]) {
-    CollisionFrame<T> unit;
+    CollisionFrame<T, 4, 2> unit;
     Edges<T> edges = Stencil::EdgesOf(x);
-    Prescale(edges, unit);
+    Prescale(unit, edges);
     const auto& [e0, e1, e2] = edges;
     const T a2 = Dot(e0, e0), al = Dot(e0, e1) / a2;
     const Vec3<T> c1 = e1 - al * e0;

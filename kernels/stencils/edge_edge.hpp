@@ -17,6 +17,7 @@ struct EdgeEdge {
   static constexpr int kDimension = 3;
   // The edges swapped; both reversed; both. One edge reversed would flip the signed length.
   static constexpr int kRelabellings[] = {2, 3, 0, 1, 1, 0, 3, 2, 3, 2, 1, 0};
+  static constexpr int kMirror[] = {0, 1, 3, 2};
 
   // e0 = x1 - x0, e1 = x3 - x2, e2 = x2 - x0.
   template <class T>
@@ -24,6 +25,9 @@ struct EdgeEdge {
     const Vec3<T> x0 = Vertex(x, 0), x2 = Vertex(x, 2);
     return {Vertex(x, 1) - x0, Vertex(x, 3) - x2, x2 - x0};
   }
+
+  // |Row0|^2 |Row1|^2 - (Row0 . Row1)^2, whatever alpha.
+  static constexpr int kGramDeterminant = 4;
 
   // Rows of the frame map over the vertices, Eq. 19: c_i = sum_j S_ij x_j.
   template <class T>

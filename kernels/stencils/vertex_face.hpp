@@ -18,6 +18,7 @@ struct VertexFace {
   static constexpr int kDimension = 3;
   // Cyclic turns of the triangle. A swap of two of its vertices would flip the signed length.
   static constexpr int kRelabellings[] = {0, 2, 3, 1, 0, 3, 1, 2};
+  static constexpr int kMirror[] = {0, 3, 2, 1};  // one that does flip it
 
   // e0 = x1 - x2, e1 = x3 - x2, e2 = x0 - x2.
   template <class T>
@@ -25,6 +26,9 @@ struct VertexFace {
     const Vec3<T> x2 = Vertex(x, 2);
     return {Vertex(x, 1) - x2, Vertex(x, 3) - x2, Vertex(x, 0) - x2};
   }
+
+  // |Row0|^2 |Row1|^2 - (Row0 . Row1)^2, whatever alpha.
+  static constexpr int kGramDeterminant = 3;
 
   // Rows of the frame map over the vertices, Eq. 19: c_i = sum_j S_ij x_j.
   template <class T>

@@ -1,0 +1,93 @@
+#pragma once
+
+// Eigensystems of small symmetric matrices without a branch, and what the nearest PSD matrix makes
+// of them.
+
+#include "kernels/core/symmetric2.hpp"
+#include "kernels/kernel.hpp"
+
+namespace definite {
+
+// values[m] belongs to the unit vector vectors[.][m].
+template <class T, int N>
+struct EigenSystem {
+  T values[N], vectors[N][N];
+};
+
+// Cyclic Jacobi rotations, a fixed number of sweeps: convergence is quadratic once the entries off
+// the diagonal are small, and what is left after the last sweep is below rounding. Reads the upper
+// triangle.
+template <class T, int N>
+DEFINITE_INLINE EigenSystem<T, N> JacobiEigen(T (&a)[N][N]) {
+  constexpr int kSweeps = N <= 3 ? 5 : N <= 5 ? 7 : 9;
+  EigenSystem<T, N> e;
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < N; ++j) e.vectors[i][j] = T(i == j ? 1.0 : 0.0);
+  }
+  const auto turn = [](T& x, T& y, const T& c, const T& s) {
+    const T old = x;
+    x = MulAdd(s, y, c * old);
+    y = MulAdd(c, y, -(s * old));
+  };
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+#pragma GCC unroll 16
+    for (int p = 0; p < N - 1; ++p) {
+#pragma GCC unroll 16
+      for (int q = p + 1; q < N; ++q) {
+        const auto [first, second, c, s] = SymmetricEigen2(a[p][p], a[p][q], a[q][q]);
+        a[p][p] = first;
+        a[q][q] = second;
+        a[p][q] = T(0.0);
+#pragma GCC unroll 16
+        for (int i = 0; i < N; ++i) {
+          if (i != p && i != q) {
+            turn(a[i < p ? i : p][i < p ? p : i], a[i < q ? i : q][i < q ? q : i], c, s);
+          }
+          turn(e.vectors[i][p], e.vectors[i][q], c, s);
+        }
+      }
+    }
+  }
+  for (int m = 0; m < N; ++m) e.values[m] = a[m][m];
+  return e;
+}
+
+// The positive part of a sum of modes: they span at most K dimensions, in which an orthonormal
+// basis (Gram-Schmidt, twice) leaves a K x K matrix.
+template <class T, int D, int K>
+Modes<T, D, K> NearestPsd(const Modes<T, D, K>& modes) {
+  Vec<T, D> q[K];
+  T r[K][K];  // modes.v[m] = sum_j r[j][m] q[j]
+  for (int m = 0; m < K; ++m) {
+    Vec<T, D> v = modes.v[m];
+    for (int j = 0; j < K; ++j) r[j][m] = T(0.0);
+    for (int pass = 0; pass < 2; ++pass) {
+      for (int j = 0; j < m; ++j) {
+        const T along = Dot(q[j], v);
+        r[j][m] = r[j][m] + along;
+        v = v - along * q[j];
+      }
+    }
+    const T norm = Sqrt(Dot(v, v));
+    r[m][m] = norm;
+    const auto none = norm <= T(0.0);
+    q[m] = Select(none, T(0.0), T(1.0) / Select(none, T(1.0), norm)) * v;
+  }
+  T a[K][K];
+  for (int i = 0; i < K; ++i) {
+    for (int j = i; j < K; ++j) {
+      a[i][j] = T(0.0);
+      for (int m = j; m < K; ++m) a[i][j] = MulAdd(modes.lambda[m] * r[i][m], r[j][m], a[i][j]);
+    }
+  }
+  const EigenSystem<T, K> e = JacobiEigen(a);
+  Modes<T, D, K> positive;
+  for (int m = 0; m < K; ++m) {
+    positive.lambda[m] = Select(e.values[m] < T(0.0), T(0.0), e.values[m]);
+    positive.v[m] = e.vectors[0][m] * q[0];
+    for (int j = 1; j < K; ++j) positive.v[m] = positive.v[m] + e.vectors[j][m] * q[j];
+  }
+  return positive;
+}
+
+}  // namespace definite

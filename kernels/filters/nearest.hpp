@@ -1,0 +1,32 @@
+#pragma once
+
+// The PSD matrix nearest to the Hessian in the Frobenius norm, without a 12x12 eigendecomposition:
+// by the energy's own projection where it has one, else in the span of its modes.
+//
+// Source: docs/derivations.md, section 2.
+
+#include "kernels/core/jacobi.hpp"
+#include "kernels/registry.hpp"
+
+namespace definite {
+
+struct Nearest {
+  static constexpr std::string_view kName = "nearest";
+  static constexpr std::string_view kSource = "docs/derivations.md, section 2";
+  static constexpr Exemption kExempt[] = {
+      {Property::kAccurate, "its error is u |H|, however small the result: deep penetration"},
+  };
+
+  template <class E, class T>
+  static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+    if constexpr (requires { E::NearestModes(x, p); }) {
+      return E::NearestModes(x, p);
+    } else {
+      return NearestPsd(E::template HessianModes<Set::kExact, Part::kAll>(x, p));
+    }
+  }
+};
+
+DEFINITE_FILTER(Nearest);
+
+}  // namespace definite
