@@ -196,13 +196,18 @@ double OffScalar(const Subject& s, const Configuration& c, const std::vector<dou
 }
 
 // What the distributions leave at its default: two of three configurations get another stiffness
-// and a side of their own.
-void VaryParameters(const EnergyRow& energy, int i, std::vector<double>& p) {
+// and a side of their own, if the energy is defined on it.
+void VaryParameters(const EnergyRow& energy, int i, Configuration& c) {
   const double stiffness[] = {1, 3.5, 0.3}, side[] = {0, 1, -1};
+  const auto* reference = reference::FindEnergy<double>(energy.name);
+  std::vector<double>& p = c.p;
   for (std::size_t j = 0; j < p.size(); ++j) {
     const std::string_view name = energy.parameters[j].name;
     if (name == "k" || name == "mu") p[j] = stiffness[i % 3];
-    if (name == "side") p[j] = side[i % 3];
+    if (name == "side") {
+      p[j] = side[i % 3];
+      if (!reference->in_domain(c.x.data(), p.data())) p[j] = 0;
+    }
   }
 }
 
@@ -303,7 +308,7 @@ std::vector<Configuration> Configurations(const EnergyRow& energy) {
       Configuration c{std::string(distribution.name) + " " + std::to_string(i), {}, {}, false, 1};
       c.x.assign(batch.X(i), batch.X(i) + energy.dofs);
       c.p.assign(batch.P(i), batch.P(i) + energy.parameters.size());
-      VaryParameters(energy, i, c.p);
+      VaryParameters(energy, i, c);
       all.push_back(c);
     }
   }
@@ -316,6 +321,9 @@ std::vector<Configuration> Configurations(const EnergyRow& energy) {
   }
   if (energy.stencil == "vertex_face") {
     for (Configuration& c : DegenerateVertexFaces()) {
+      for (std::size_t j = c.p.size(); j < energy.parameters.size(); ++j) {
+        c.p.push_back(energy.parameters[j].value);
+      }
       c.conditioning = ConditioningOf(energy, c.x, c.p);
       all.push_back(c);
     }

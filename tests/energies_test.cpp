@@ -52,6 +52,12 @@ int IndexOf(const EnergyRow& energy, std::string_view name) {
   return at == energy.parameters.end() ? -1 : static_cast<int>(at - energy.parameters.begin());
 }
 
+Numbers Defaults(const EnergyRow& energy) {
+  Numbers p;
+  for (const Parameter& parameter : energy.parameters) p.push_back(parameter.value);
+  return p;
+}
+
 // Whether rounding x cannot move the length of a collision across eps or 0.
 bool IsDecided(const EnergyRow& energy, const Numbers& x, const Numbers& p) {
   const int eps = IndexOf(energy, "eps");
@@ -155,7 +161,8 @@ TEST_P(EveryEnergy, HasTheReferencesValueAndGradient) {
 // cross, a vertex over an edge, two vertices, parallel edges.
 std::vector<Numbers> PairsAt(std::string_view stencil, double h) {
   if (stencil == "vertex_face") return {{0.25, 0.25, -h, 0, 0, 0, 1, 0, 0, 0, 1, 0}};
-  if (stencil != "edge_edge") return {};
+  if (stencil == "vertex_edge") return {{0.25, h, 0, 0, 0, 0, 1, 0, 0}};
+  if (stencil == "vertex_vertex") return {{0, 0, 0, 0, 0, h}};
   return {{-1, 0, 0, 1, 0, 0, 0, -1, h, 0, 1, h},
           {-1, 0, 0, 1, 0, 0, 0, 0, h, 0, 0, h + 1},
           {-1, 0, 0, 1, 0, 0, 1 + h, 0, 0, 2 + h, 1, 0},
@@ -167,7 +174,10 @@ TEST_P(EveryCollision, ActsBelowItsActivationDistanceAndNotAtOrBeyondIt) {
   int checked = 0;
   for (const Numbers& x : PairsAt(energy_.stencil, h)) {
     for (double side : {0.0, 1.0}) {
-      Numbers p = {3.5, h, side};
+      Numbers p = Defaults(energy_);
+      p[0] = 3.5;
+      p[1] = h;
+      p[2] = side;
       // Of edges side by side the signed length measures something else.
       if (reference::FindEnergy<double>(energy_.name)->length(x.data(), p.data()) != h) continue;
       ExpectNothing(energy_, x, p);
@@ -201,6 +211,15 @@ std::vector<Numbers> DegenerateShapes(std::string_view stencil) {
             {0, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0},     // the other
             {1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3}};    // one point
   }
+  if (stencil == "vertex_edge") {
+    return {{0.5, 0, 0, 0, 0, 0, 1, 0, 0},   // on the edge
+            {5, 0, 0, 0, 0, 0, 1, 0, 0},     // on its line
+            {0.5, 1, 0, 1, 0, 0, 1, 0, 0},   // an edge of length zero
+            {1, 2, 3, 1, 2, 3, 1, 2, 3}};    // one point
+  }
+  if (stencil == "vertex_vertex") {
+    return {{0, 0, 0, 0, 0, 0}, {1, 2, 3, 1, 2, 3}, {1e300, 0, 0, 1e300, 0, 0}};  // one point
+  }
   return {{-1, 0, 0, 0, 0, 0, 2, 0, 0},    // straight
           {1, 0, 0, 0, 0, 0, 2, 1e-9, 0},  // folded
           {0, 0, 0, 0, 0, 0, 2, 1, 0},     // an edge of length zero
@@ -210,8 +229,7 @@ std::vector<Numbers> DegenerateShapes(std::string_view stencil) {
 TEST_P(EveryEnergy, IsZeroOutsideItsDomain) {
   int outside = 0;
   for (const Numbers& x : DegenerateShapes(energy_.stencil)) {
-    Numbers p;
-    for (const Parameter& parameter : energy_.parameters) p.push_back(parameter.value);
+    Numbers p = Defaults(energy_);
     if (const int eps = IndexOf(energy_, "eps"); eps >= 0) p[static_cast<std::size_t>(eps)] = 10;
     const bool in_domain = Classify(energy_, x, p).in_domain;
     EXPECT_LE(in_domain, TruthOf(energy_, x, p).InDomain());
@@ -242,10 +260,12 @@ TEST_P(EveryEnergy, PassesANaNOnToEveryRow) {
     if (!c.well_conditioned || !Classify(energy_, c.x, c.p).active) continue;
     if (++checked > 12) break;
     for (std::size_t i = 0; i < c.p.size(); ++i) {
-      if (energy_.parameters[i].name == "side") continue;  // an index, only its sign counts
+      const std::string_view name = energy_.parameters[i].name;
+      // Of the side only the sign counts, and m only for l < 0.
+      if (name == "side" || name == "m") continue;
       Numbers p = c.p;
       p[i] = kNaN;
-      expect_nan(c.x, p, energy_.parameters[i].name);
+      expect_nan(c.x, p, name);
     }
     for (std::size_t i = 0; i < c.x.size(); ++i) {
       Numbers x = c.x;

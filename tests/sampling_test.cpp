@@ -431,6 +431,31 @@ TEST(Sampling, DrawsActiveEdgesAsDifferencesOfNormalVertices) {
   }
 }
 
+TEST(Sampling, DrawsActiveVerticesBesideAnEdgeAndNearAVertex) {
+  std::vector<double> along, beside, apart;
+  for (std::uint64_t index = 0; index < kShapes; ++index) {
+    const Configuration pair = Draw("active", "vertex_edge", 42, index);
+    double de = 0, ee = 0, dd = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double d = pair[i] - pair[3 + i], e = pair[6 + i] - pair[3 + i];
+      de += d * e;
+      ee += e * e;
+      dd += d * d;
+    }
+    along.push_back(de / ee);
+    beside.push_back(std::sqrt(std::max(0.0, dd - de * de / ee)) / 0.1);
+    const Configuration vertices = Draw("active", "vertex_vertex", 42, index);
+    double square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      square += (vertices[3 + i] - vertices[i]) * (vertices[3 + i] - vertices[i]);
+    }
+    apart.push_back(std::sqrt(square) / 0.1);
+  }
+  for (const auto* values : {&along, &beside, &apart}) {
+    EXPECT_LT(KolmogorovSmirnov(*values, UniformCdf), kKolmogorovBound);
+  }
+}
+
 TEST(Sampling, OverridesParametersByName) {
   // In the order eps, eta, k, side; eta is the energy's own.
   using Parameters = std::array<double, 4>;
@@ -450,7 +475,8 @@ TEST(Sampling, FillsAsManyCoordinatesAsTheEnergyHas) {
 }
 
 TEST(Sampling, KnowsWhichStencilsADistributionSupports) {
-  for (const std::string_view stencil : {"vertex_face", "edge_edge", "corner", "hinge"}) {
+  for (const std::string_view stencil :
+       {"vertex_face", "edge_edge", "vertex_edge", "vertex_vertex", "corner", "hinge"}) {
     EXPECT_TRUE(FindDistribution("paper")->supports(stencil));
     EXPECT_TRUE(FindDistribution("normal")->supports(stencil));
     EXPECT_EQ(FindDistribution("active")->supports(stencil), stencil != "hinge");

@@ -27,8 +27,21 @@ void Batch::Draw(const Distribution& distribution, std::uint64_t seed, std::uint
   for (std::int64_t i = 0; i < size; ++i) {
     distribution.draw(target, seed, first + static_cast<std::uint64_t>(i),
                       x_.Data() + Offset(i, energy_->dofs), p_.Data() + Offset(i, Parameters()));
+    if (!energy_->mirror.empty()) Mirror(i);
   }
   Tile();
+}
+
+void Batch::Mirror(std::int64_t i) {
+  double classification[3];
+  energy_->classify(X(i), P(i), classification, 1);
+  if (classification[1] == 1) return;
+  const auto size = static_cast<std::size_t>(energy_->dimension);
+  double* x = x_.Data() + Offset(i, energy_->dofs);
+  const std::vector<double> old(x, x + energy_->dofs);
+  for (const int vertex : energy_->mirror) {
+    x = std::copy_n(old.data() + static_cast<std::size_t>(vertex) * size, size, x);
+  }
 }
 
 void Batch::Take(const Batch& from, std::span<const std::int64_t> indices) {

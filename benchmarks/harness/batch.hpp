@@ -38,6 +38,7 @@ class Batch {
   explicit Batch(const EnergyRow& energy) : energy_(&energy) {}
 
   // Draws the configurations first, first + 1, ... of a distribution; size is a multiple of kTile.
+  // Those on the side where the energy is not defined are mirrored.
   void Draw(const Distribution& distribution, std::uint64_t seed, std::uint64_t first,
             std::int64_t size);
 
@@ -59,6 +60,7 @@ class Batch {
   }
 
  private:
+  void Mirror(std::int64_t i);
   void Resize(std::int64_t size);
   void Tile();
   int Parameters() const { return static_cast<int>(energy_->parameters.size()); }

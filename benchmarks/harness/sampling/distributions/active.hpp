@@ -11,6 +11,8 @@ namespace definite::distributions {
 // both edges, and a signed length l uniform in (-eps, eps). Conventions as in the stencils, x2 at
 // the origin, n = e0 x e1 / |e0 x e1|, l = n.e2:
 //   vertex_face  e0 = x1-x2, e1 = x3-x2, e2 = x0-x2 = beta e0 + gamma e1 + l n
+//   vertex_edge  x0-x1 = beta e + l m, e = x2-x1, m a unit vector normal to e
+//   vertex_vertex  x1-x0 = l m
 //   corner       three iid N(0,1) vertices: a strand is always active
 //   edge_edge    e0 = x1-x0, e1 = x3-x2, e2 = x2-x0 = a e0 - b e1 + l n
 struct Active {
@@ -21,7 +23,8 @@ struct Active {
   static constexpr ParameterValue kParameters[] = {{"k", 1}, {"eps", kEps}, {"side", 0}};
 
   static bool Supports(std::string_view stencil) {
-    return stencil == "vertex_face" || stencil == "edge_edge" || stencil == "corner";
+    return stencil == "vertex_face" || stencil == "edge_edge" || stencil == "vertex_edge" ||
+           stencil == "vertex_vertex" || stencil == "corner";
   }
 
   static void DrawCoordinates(const DrawTarget& target, Draws& draws, double* x) {
@@ -29,6 +32,10 @@ struct Active {
       DrawVertexFace(draws, x);
     } else if (target.stencil == "edge_edge") {
       DrawEdgeEdge(draws, x);
+    } else if (target.stencil == "vertex_edge") {
+      DrawVertexEdge(draws, x);
+    } else if (target.stencil == "vertex_vertex") {
+      DrawVertexVertex(draws, x);
     } else {
       DrawCorner(draws, x);
     }
@@ -72,6 +79,26 @@ struct Active {
       x[3 + i] = e0[i];
       x[6 + i] = 0;
       x[9 + i] = e1[i];
+    }
+  }
+
+  static void DrawVertexEdge(Draws& draws, double* x) {
+    const Vec3 v1 = NormalPoint(draws), v2 = NormalPoint(draws), other = NormalPoint(draws);
+    const Vec3 e = Difference(v2, v1);
+    const Vec3 d = Offset(draws, e, other, draws.OpenUniform(), 0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      x[i] = d[i];
+      x[3 + i] = 0;
+      x[6 + i] = e[i];
+    }
+  }
+
+  static void DrawVertexVertex(Draws& draws, double* x) {
+    const Vec3 v = NormalPoint(draws), w = NormalPoint(draws);
+    const Vec3 d = Offset(draws, v, w, 0, 0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      x[i] = 0;
+      x[3 + i] = d[i];
     }
   }
 
