@@ -243,12 +243,49 @@ std::vector<Configuration> DegenerateVertexFaces() {
       VertexFaceCase("height 1e8", ex, {0.5, 1e8, 0}, 0.3, 0.3, 0.05, 0.1, 0),
       VertexFaceCase("deep under a tiny triangle", {1e-6, 0, 0}, {0, 1e-6, 0}, 0.3, 0.3, -1, 0.1,
                      0),
+      VertexFaceCase("equilateral, over the centroid", ex, {0.5, std::sqrt(0.75), 0}, 1. / 3, 1. / 3,
+                     0.05, 0.1, 0),
+      VertexFaceCase("equilateral, deep under the centroid", ex, {0.5, std::sqrt(0.75), 0}, 1. / 3,
+                     1. / 3, -1e3, 0.1, 0),
       VertexFaceCase("foot point far outside", ex, ey, 100, -50, 0.05, 0.1, 0),
       VertexFaceCase("far from the origin", ex, ey, 0.25, 0.5, 0.0625, 0.125, 0x1p20),
       VertexFaceCase("side flipped", e0, e1, 0.3, 0.4, -0.05, 0.1, 0),
   };
   cases.back().p[2] = -1;
   return cases;
+}
+
+// Two edges, the closest points at a and b along them and l between these.
+Configuration EdgeEdgeCase(std::string name, std::vector<double> e0, std::vector<double> e1,
+                           double a, double b, double l, double eps) {
+  const std::vector<double> c = {e0[1] * e1[2] - e0[2] * e1[1], e0[2] * e1[0] - e0[0] * e1[2],
+                                 e0[0] * e1[1] - e0[1] * e1[0]};
+  const double area = std::hypot(c[0], c[1], c[2]);
+  Configuration r{std::move(name), {}, {1, eps, 0}, false, 1};
+  r.x.resize(12);
+  for (std::size_t i = 0; i < 3; ++i) {
+    r.x[i] = -a * e0[i];
+    r.x[3 + i] = (1 - a) * e0[i];
+    r.x[6 + i] = l * c[i] / area - b * e1[i];
+    r.x[9 + i] = l * c[i] / area + (1 - b) * e1[i];
+  }
+  return r;
+}
+
+std::vector<Configuration> DegenerateEdgeEdges() {
+  const std::vector<double> ex = {1, 0, 0}, ey = {0, 1, 0}, e0 = {0.9, 0.2, -0.4},
+                            e1 = {-0.3, 0.8, 0.5};
+  return {
+      EdgeEdgeCase("l = 0 exactly", ex, ey, 0.25, 0.5, 0, 0.1),
+      EdgeEdgeCase("l = 1e-12", e0, e1, 0.25, 0.5, 1e-12, 0.1),
+      EdgeEdgeCase("midpoints of equal edges at a right angle", ex, ey, 0.5, 0.5, 0.05, 0.1),
+      EdgeEdgeCase("midpoints, deep", ex, ey, 0.5, 0.5, -1e3, 0.1),
+      EdgeEdgeCase("one edge tiny, deep", ex, {0, 1e-6, 0}, 0.3, 0.4, -1, 0.1),
+      EdgeEdgeCase("angle 1e-4", ex, {1, 1e-4, 0}, 0.3, 0.6, 0.05, 0.1),
+      EdgeEdgeCase("angle 1e-7", ex, {1, 1e-7, 0}, 0.5, 0.5, 0.05, 0.1),
+      EdgeEdgeCase("end of one edge", ex, ey, -0.02, 0.5, 0.05, 0.1),
+      EdgeEdgeCase("ends of both", e0, e1, 1.02, -0.03, 0.05, 0.1),
+  };
 }
 
 }  // namespace
@@ -319,14 +356,15 @@ std::vector<Configuration> Configurations(const EnergyRow& energy) {
     c.conditioning = ConditioningOf(energy, c.x, c.p);
     c.well_conditioned = c.conditioning > 0.1 && std::abs(length) > 0.01;
   }
-  if (energy.stencil == "vertex_face") {
-    for (Configuration& c : DegenerateVertexFaces()) {
-      for (std::size_t j = c.p.size(); j < energy.parameters.size(); ++j) {
-        c.p.push_back(energy.parameters[j].value);
-      }
-      c.conditioning = ConditioningOf(energy, c.x, c.p);
-      all.push_back(c);
+  std::vector<Configuration> degenerate;
+  if (energy.stencil == "vertex_face") degenerate = DegenerateVertexFaces();
+  if (energy.stencil == "edge_edge") degenerate = DegenerateEdgeEdges();
+  for (Configuration& c : degenerate) {
+    for (std::size_t j = c.p.size(); j < energy.parameters.size(); ++j) {
+      c.p.push_back(energy.parameters[j].value);
     }
+    c.conditioning = ConditioningOf(energy, c.x, c.p);
+    all.push_back(c);
   }
   return all;
 }

@@ -103,6 +103,14 @@ DEFINITE_INLINE LaneMask<S, W> operator|(const LaneMask<S, W>& a, const LaneMask
   return internal::Wrap<LaneMask<S, W>>(a.lane | b.lane);
 }
 
+// Whether it holds in any lane.
+template <class S, int W>
+DEFINITE_INLINE bool Any(const LaneMask<S, W>& m) {
+  typename LaneMask<S, W>::Integer any = 0;
+  for (int i = 0; i < W; ++i) any |= m.lane[i];
+  return any != 0;
+}
+
 template <class S, int W>
 DEFINITE_INLINE Lanes<S, W> Select(const LaneMask<S, W>& m, const Lanes<S, W>& yes,
                                    const Lanes<S, W>& no) {

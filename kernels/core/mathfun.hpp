@@ -17,6 +17,8 @@ DEFINITE_INLINE T Select(bool condition, const T& yes, const T& no) {
   return condition ? yes : no;
 }
 
+DEFINITE_INLINE bool Any(bool condition) { return condition; }
+
 // a b + c, rounded once where the type has a fused multiply-add.
 DEFINITE_INLINE double MulAdd(double a, double b, double c) { return std::fma(a, b, c); }
 template <class T>

@@ -1,8 +1,19 @@
 #pragma once
 
-// Where double precision ends: the thresholds that bound the domains of the energies.
+// Where double precision ends: the thresholds that bound the domains of the energies, and what an
+// iteration may leave.
+
+#include "kernels/core/lanes.hpp"
 
 namespace definite {
+
+// The cube root of the unit roundoff: where an iteration of third order may stop.
+template <class T>
+inline constexpr double kUnitCubeRoot = 1e-12;  // float128 and wider
+template <>
+inline constexpr double kUnitCubeRoot<double> = 5e-6;
+template <int W>
+inline constexpr double kUnitCubeRoot<Lanes<double, W>> = 5e-6;
 
 // The sine under which two edges count as parallel; a constant of the protocol.
 inline constexpr double kTau = 1e-8;

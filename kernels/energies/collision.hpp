@@ -137,7 +137,7 @@ struct Collision {
       return MapModes(PullBack(f, ModesOf<Set::kSplit, Part::kPositive>(f, slopes)),
                       [](const T& l) { return Select(l < T(0.0), T(0.0), l); });
     } else {
-      return definite::NearestModes<Length::kTangents>(f, slopes.psi1, slopes.psi2);
+      return definite::NearestModes<Stencil, Length::kTangents>(f, slopes.psi1, slopes.psi2);
     }
   }
 

@@ -74,7 +74,7 @@ struct CollisionAnisotropic {
   template <class T>
   static DEFINITE_INLINE auto NearestModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const Mixed<T> mixed = MixedOf(x, p);
-    return definite::NearestModes<kBothFree>(
+    return definite::NearestModes<Stencil, kBothFree>(
         TurnedInX<kBothFree, Stencil::kGramDeterminant>(mixed.f), mixed.psi1 * mixed.slope,
         mixed.psi2);
   }

@@ -5,6 +5,8 @@
 //
 // Source: docs/derivations.md, section 2.
 
+#include <array>
+
 #include "kernels/core/jacobi.hpp"
 #include "kernels/registry.hpp"
 
@@ -13,9 +15,7 @@ namespace definite {
 struct Nearest {
   static constexpr std::string_view kName = "nearest";
   static constexpr std::string_view kSource = "docs/derivations.md, section 2";
-  static constexpr Exemption kExempt[] = {
-      {Property::kAccurate, "its error is u |H|, however small the result: deep penetration"},
-  };
+  static constexpr std::array<Exemption, 0> kExempt{};
 
   template <class E, class T>
   static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {

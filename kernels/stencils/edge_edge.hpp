@@ -29,6 +29,13 @@ struct EdgeEdge {
   // |Row0|^2 |Row1|^2 - (Row0 . Row1)^2, whatever alpha.
   static constexpr int kGramDeterminant = 4;
 
+  // What no choice of Row0 and Row1 takes from Row2: its part along the one row that sums to zero and
+  // is orthogonal to both.
+  template <class T>
+  static DEFINITE_INLINE Vec<T, 4> RestRow() {
+    return {T(-0.5), T(-0.5), T(0.5), T(0.5)};
+  }
+
   // Rows of the frame map over the vertices, Eq. 19: c_i = sum_j S_ij x_j.
   template <class T>
   static DEFINITE_INLINE Vec<T, 4> Row0() {

@@ -16,6 +16,12 @@ struct VertexEdge {
   static constexpr int kDofs = 9;
   static constexpr int kDimension = 3;
   static constexpr int kRelabellings[] = {0, 2, 1};  // the edge reversed
+
+  // The part of (1, beta - 1, -beta), whatever beta, that is orthogonal to the edge's (0, -1, 1).
+  template <class T>
+  static DEFINITE_INLINE Vec<T, 3> RestRow() {
+    return {T(1.0), T(-0.5), T(-0.5)};
+  }
 };
 
 }  // namespace definite
