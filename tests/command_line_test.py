@@ -189,7 +189,7 @@ class BadInput(unittest.TestCase):
 
     def test_a_set_that_is_no_name_and_number_is_rejected(self):
         replay = ["replay", "--kernel", row_names()[0], "--index", "0"]
-        for command in (["sweep"], replay):
+        for command in (["sweep"], replay, ["reproduce", "collision-accuracy"]):
             for word, said in (("side", "expected NAME=VALUE"), ("side=", "expected a number"),
                                ("side=x", "expected a number"), ("side=1x", "expected a number"),
                                ("side=nan", "expected a number"), ("eps=inf", "expected a number"),
