@@ -308,8 +308,9 @@ std::string Markdown(const Json& result) {
       "### An earlier study beside ours\n" +
       Paragraph(fmt::format(
           "{} of {} distances agree: the medians to sampling (2 %), the study's rounding to two "
-          "digits and our buckets (1/32), and its p95 lies between our median and our p99. Maxima "
-          "grow with the number of pairs: here {} each, about 10^5 there (5 10^4 of a side).",
+          "digits and our buckets (1/32), and its p95 lies between our median and our p99. In each "
+          "pair of columns theirs is on the left. Maxima grow with the number of pairs: here {} "
+          "each, about 10^5 there (5 10^4 of a side).",
           reproduced, all, WithCommas(result.at("rows").at(0).at("count").get<std::uint64_t>())));
   if (!others.empty()) text += "\n" + others;
   for (const std::string_view energy :
