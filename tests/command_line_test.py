@@ -187,6 +187,27 @@ class BadInput(unittest.TestCase):
     def test_quick_with_a_count_is_rejected(self):
         self.assert_rejected(["sweep", "--quick", "--count", "5"], "--count", "--quick")
 
+    def test_a_set_that_is_no_name_and_number_is_rejected(self):
+        replay = ["replay", "--kernel", row_names()[0], "--index", "0"]
+        for command in (["sweep"], replay, ["reproduce", "collision-accuracy"]):
+            for word, said in (("side", "expected NAME=VALUE"), ("side=", "expected a number"),
+                               ("side=x", "expected a number"), ("side=1x", "expected a number"),
+                               ("side=nan", "expected a number"), ("eps=inf", "expected a number"),
+                               ("eps=1e999", "expected a number"), ("", "expected NAME=VALUE"),
+                               ("siede=1", "parameter 'siede'"), ("=1", "parameter ''")):
+                with self.subTest(command=command[0], word=word):
+                    self.assert_rejected([*command, "--set", word], f"--set '{word}': ", said)
+
+    def test_a_parameter_that_no_energy_asked_for_has_is_rejected_with_those_there_are(self):
+        for command in (["sweep", "--kernels", ENERGY + "/*"],
+                        ["replay", "--kernel", ENERGY + "/none/f64", "--index", "0"]):
+            self.assert_rejected([*command, "--set", "m=0.6"], "--set 'm=0.6'", "'m'",
+                                 "there are: k, eps, side")
+
+    def test_a_parameter_set_twice_is_rejected(self):
+        self.assert_rejected(["sweep", "--set", "k=2", "--set", "k=3"], "--set 'k=3'",
+                             "k is set already")
+
     def test_threads_below_one_are_rejected(self):
         for threads in ("0", "-1"):
             with self.subTest(threads=threads):
@@ -572,6 +593,68 @@ class Sweeps(unittest.TestCase):
             self.assertEqual(found[name], found[name.removesuffix("x8")])
 
 
+class Set(unittest.TestCase):
+    """Parameters set for a whole sweep."""
+
+    ROWS = [word for name in ("analytic", "none") for word in
+            ("--kernels", f"collision/vertex_face/unsigned/quadratic/{name}/f64")]
+
+    def parameters(self, *words):
+        """The row without words, the row with them, and the parameters at the worst case."""
+        drawn = sweep("--count", "1000", "--no-timing", *self.ROWS)["rows"][0]
+        result = sweep("--count", "1000", "--no-timing", *self.ROWS, *words)
+        VALIDATOR.validate(result)
+        row = result["rows"][0]
+        return drawn, row, [float.fromhex(p) for p in row["accuracy"]["distance"]["max"]["p"]]
+
+    def test_what_is_set_holds_for_every_configuration_and_is_recorded(self):
+        for words, set_, p in ((["--set", "side=-1"], {"side": -1}, [1, 0.1, -1]),
+                               (["--set", "k=2.5", "--set", "eps=1e-1"], {"k": 2.5, "eps": 0.1},
+                                [2.5, 0.1, 0])):
+            drawn, row, found = self.parameters(*words)
+            self.assertNotIn("set", drawn)
+            self.assertEqual(row["set"], set_)
+            self.assertEqual(found, p)
+            self.assertNotEqual(row["checksum"], drawn["checksum"])
+
+    def test_it_changes_what_is_active(self):
+        active = {side: sweep("--count", "1000", "--no-timing", "--distribution", "normal",
+                              *self.ROWS, "--set", f"side={side}")["rows"][0]["active"]
+                  for side in (1, -1)}
+        self.assertLess(active[1], 900)
+        self.assertEqual(active[-1], 1000)
+
+    def test_energies_without_the_parameter_are_as_they_were(self):
+        rows = ["--kernels", "collision/vertex_face/signed/quadratic/none/f64",
+                "--kernels", "collision/vertex_face/signed/cubic/none/f64"]
+        drawn, changed = (checksums(sweep("--count", "500", "--no-timing", *rows, *words))
+                          for words in ([], ["--set", "delta=1"]))
+        self.assertEqual([drawn[name] == changed[name] for name in drawn], [True, False])
+        result = sweep("--count", "500", "--no-timing", *rows, "--set", "delta=1")
+        self.assertEqual([row.get("set") for row in result["rows"]], [None, {"delta": 1}])
+
+    def test_the_timed_pass_has_it_too(self):
+        rows = sweep("--count", "2000", "--kernels", self.ROWS[1], "--distribution", "normal",
+                     "--set", "side=1", "--set", "eps=1e-9")["rows"]
+        self.assertEqual([timing["pairs"] for timing in rows[0]["timing"]], ["all"])
+
+    def test_a_worst_case_replays_with_it(self):
+        words = ["--distribution", "normal", "--seed", "3", "--set", "side=-1", "--set", "eps=0.5"]
+        result = sweep("--count", "2000", "--no-timing", *self.ROWS, *words)
+        worst = result["rows"][0]["accuracy"]["distance"]["max"]
+        replay = json.loads(run("replay", "--json", "--kernel", result["rows"][0]["kernel"],
+                                "--index", str(worst["index"]), *words).stdout)
+        self.assertEqual((replay["x"], replay["p"]), (worst["x"], worst["p"]))
+        shown = next(r for r in replay["rows"] if r["kernel"] == result["rows"][0]["kernel"])
+        self.assertEqual(shown["distance"], worst["exact"])
+
+    def test_people_see_it(self):
+        table = run("sweep", "--count", "500", *self.ROWS, "--set", "side=-1").stdout
+        self.assertIn("active, side = -1, seed 42", table)
+        replay = run("replay", "--kernel", self.ROWS[1], "--index", "3", "--set", "side=-1").stdout
+        self.assertIn("active, side = -1, seed 42, index 3\n", replay)
+
+
 class Replays(unittest.TestCase):
     NAME = ENERGY + "/analytic/f64"
 
@@ -663,6 +746,18 @@ class BrokenPromises(unittest.TestCase):
             self.assertEqual(again.returncode, 1)
             self.assertIn(f"index {broken[name]['psd']}\n", again.stdout)
             self.assertEqual(again.stderr.count(f"{name} promises to be psd and is not\n"), 1)
+
+    def test_the_line_that_replays_it_has_what_was_set(self):
+        done = run("sweep", "--count", "200", "--set", "side=-1", "--set", "eps=0.0625",
+                   program=BROKEN_PROGRAM)
+        self.assertEqual(done.returncode, 1)
+        found = re.findall(r"psd and is not:\n  definite (replay .*)\n", done.stderr)
+        self.assertNotEqual(found, [])
+        for command in found:
+            self.assertTrue(command.endswith(" --set side=-1 --set eps=0.0625"), command)
+            again = run(*command.split(), program=BROKEN_PROGRAM)
+            self.assertEqual(again.returncode, 1)
+            self.assertIn("psd and is not\n", again.stderr)
 
     def test_what_a_filter_does_not_promise_exits_0(self):
         none = ENERGY + "/none/f64"

@@ -278,13 +278,70 @@ TEST(CheckedPass, CoversAPrefixWhenInterrupted) {
 
 TEST(CheckedPass, LooksDeeperAtSamples) {
   const std::uint64_t n = 10'000'000;
-  std::array<std::uint64_t, 4> seen{};
-  for (std::uint64_t i = 0; i < n; ++i) ++seen[static_cast<std::size_t>(DepthOf(i, n))];
-  EXPECT_EQ(seen[3], 10'000u);
-  EXPECT_EQ(seen[2], 90'000u);
-  EXPECT_EQ(seen[1], 900'000u);
+  const auto seen = [&](const Samples& samples) {
+    std::array<std::uint64_t, 3> counts{};
+    for (std::uint64_t i = 0; i < n; ++i) {
+      const Depth depth = DepthOf(i, n, samples);
+      counts[0] += depth.definition;
+      counts[1] += depth.spectrum;
+      counts[2] += depth.truth;
+    }
+    return counts;
+  };
+  EXPECT_EQ(seen({}), (std::array<std::uint64_t, 3>{1'000'000, 100'000, 10'000}));
+  EXPECT_EQ(seen({2'000, 50'000, 100}), (std::array<std::uint64_t, 3>{2'000, 50'000, 100}));
   EXPECT_EQ(DepthOf(0, 1), Depth::kTruth);
   EXPECT_EQ(DepthOf(1, 50), Depth::kDefinition);
+}
+
+TEST(CheckedPass, CoversTheConfigurationsOfSeveralPlans) {
+  std::vector<SweepPlan> plans(2, Plan(300, 2));
+  for (SweepPlan& plan : plans) {
+    plan.rows = {FindKernel("collision/vertex_face/unsigned/quadratic/none/f64"),
+                 FindKernel("collision/vertex_face/unsigned/quadratic/analytic/f64")};
+  }
+  plans[1].distribution = FindDistribution("normal");
+  plans[1].overrides = {{"side", -1}, {"delta", 0.5}};
+  plans[1].samples = {.definition = 10, .spectrum = 0, .truth = 0};
+  Progress progress(false);
+  const std::vector<SweepResult> results = RunSweeps(plans, progress);
+  const auto json = ToJson(results, {"test"}, Detail::kBrief);
+  ASSERT_EQ(json["rows"].size(), 2 * plans[0].rows.size());
+  const auto &first = json["rows"][0], &last = json["rows"].back();
+  EXPECT_EQ(first["distribution"], "active");
+  EXPECT_FALSE(first.contains("set"));
+  EXPECT_EQ(first["accuracy"]["relabelling"]["count"], 30);
+  EXPECT_EQ(last["distribution"], "normal");
+  EXPECT_EQ(last["set"].dump(), R"({"side":-1.0})");  // it has no delta
+  EXPECT_EQ(last["active"], 300);                     // inside, all act
+  EXPECT_EQ(last["accuracy"]["defined"], 10);
+  EXPECT_TRUE(last["accuracy"]["relabelling"].is_null());
+  EXPECT_TRUE(last["accuracy"]["distance"]["max"]["x"].is_null());
+  EXPECT_TRUE(last["accuracy"]["rounding"].is_null());
+  const auto whole = ToJson(results, {"test"}, Detail::kSummaries);
+  EXPECT_EQ(whole["rows"].back()["accuracy"]["distance"]["max"]["x"].size(), 12u);
+  EXPECT_EQ(whole["rows"].back()["accuracy"]["distance"]["max"]["p"][2], "-0x1p+0");
+  EXPECT_EQ(ReplayCommand(plans[1], *plans[1].rows.back(), 7),
+            "definite replay --kernel " + plans[1].rows.back()->name +
+                " --distribution normal --seed 42 --index 7 --set side=-1");
+}
+
+TEST(Batch, SetsParametersBeforeItMirrors) {
+  const EnergyRow& energy =
+      *FindKernel("collision/vertex_face/signed/log_barrier/none/f64")->energy;
+  const ParameterValue overrides[] = {{"side", -1}, {"k", 2}, {"no such", 7}};
+  Batch drawn(energy), set(energy, overrides);
+  drawn.Draw(*FindDistribution("active"), 3, 0, 64);
+  set.Draw(*FindDistribution("active"), 3, 0, 64);
+  for (std::int64_t i = 0; i < 64; ++i) {
+    EXPECT_EQ(set.P(i)[0], 2);
+    EXPECT_EQ(set.P(i)[1], 0.1);  // as drawn
+    EXPECT_EQ(set.P(i)[2], -1);
+    double classification[3];
+    energy.classify(set.X(i), set.P(i), classification, 1);
+    EXPECT_EQ(classification[1], 1);  // in the domain: on the side where it is defined now
+    EXPECT_FALSE(std::equal(drawn.X(i), drawn.X(i) + 12, set.X(i)));
+  }
 }
 
 TEST(Batch, TakesSomeConfigurationsAndFillsTheLastTileWithTheLast) {

@@ -1,6 +1,7 @@
 #include "tools/command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fnmatch.h>
 
 #include <algorithm>
@@ -74,6 +75,44 @@ std::uint64_t ParseCount(const std::string& option, const std::string& text, std
   return static_cast<std::uint64_t>(value);
 }
 
+std::vector<ParameterValue> ParseOverrides(const std::vector<std::string>& words,
+                                           const std::vector<const KernelRow*>& rows) {
+  std::vector<ParameterValue> overrides;
+  for (const std::string& word : words) {
+    const auto fail = [&](const std::string& what) -> UsageError {
+      return UsageError(fmt::format("--set '{}': {}", word, what));
+    };
+    const std::size_t equals = word.find('=');
+    if (equals == word.npos) throw fail("expected NAME=VALUE, such as side=-1");
+    const std::string_view name = std::string_view(word).substr(0, equals);
+    double value = 0;
+    const char* const last = word.data() + word.size();
+    const auto [end, error] = std::from_chars(word.data() + equals + 1, last, value);
+    if (error != std::errc() || end != last || !std::isfinite(value)) {
+      throw fail("expected a number after the =");
+    }
+    const Parameter* known = nullptr;
+    std::vector<std::string_view> names;  // of all rows
+    for (const KernelRow* row : rows) {
+      for (const Parameter& parameter : row->energy->parameters) {
+        if (parameter.name == name) known = &parameter;
+        if (std::ranges::find(names, parameter.name) == names.end()) {
+          names.push_back(parameter.name);
+        }
+      }
+    }
+    if (!known) {
+      throw fail(fmt::format("no energy asked for has a parameter '{}'; there are: {}", name,
+                             fmt::join(names, ", ")));
+    }
+    if (std::ranges::find(overrides, name, &ParameterValue::name) != overrides.end()) {
+      throw fail(fmt::format("{} is set already", name));
+    }
+    overrides.push_back({known->name, value});
+  }
+  return overrides;
+}
+
 std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs) {
   std::vector<const KernelRow*> rows;
   for (const std::string& glob : globs) {
@@ -128,13 +167,22 @@ void AddDistributionOption(CLI::App& command, std::string& name) {
       ->type_name("NAME");
 }
 
+void AddSetOption(CLI::App& command, std::vector<std::string>& overrides) {
+  command
+      .add_option("--set", overrides,
+                  "Sets a parameter of energies that have it, as side=-1 (may be repeated)")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void AddSeedOption(CLI::App& command, std::string& seed) {
   command.add_option("--seed", seed, fmt::format("Seed of the configurations (default: {})", seed))
       ->type_name("N");
 }
 
 std::uint64_t RunOptions::Count() const {
-  return quick ? 100'000 : ParseCount("--count", count, 1);
+  return quick ? 100'000 : ParseCount("--count", count.value_or(default_count), 1);
 }
 
 std::uint64_t RunOptions::Seed() const { return ParseCount("--seed", seed, 0); }
@@ -147,13 +195,14 @@ int RunOptions::Threads() const {
 void AddRunOptions(CLI::App& command, RunOptions& options) {
   CLI::Option* count =
       command
-          .add_option("--count", options.count,
-                      fmt::format("Configurations, such as 1000, 10M (default: {})", options.count))
+          .add_option(
+              "--count", options.count,
+              fmt::format("Configurations, such as 1000, 10M (default: {})", options.default_count))
           ->type_name("N");
   command.add_flag("--quick", options.quick, "The same as --count 1e5")->excludes(count);
   AddSeedOption(command, options.seed);
-  command.add_option("--threads", options.threads, "Threads (default: all cores)")
-      ->type_name("N");
+  AddSetOption(command, options.overrides);
+  command.add_option("--threads", options.threads, "Threads (default: all cores)")->type_name("N");
 }
 
 void AddJsonOption(CLI::App& command, std::optional<std::string>& path) {

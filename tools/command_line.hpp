@@ -34,10 +34,16 @@ std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs
 const KernelRow& RowNamed(const std::string& name);
 const Distribution& DistributionNamed(const std::string& name);
 
+// Parameters set by words such as "side=-1". Throws UsageError if a word is not like this, or names
+// what none of the rows' energies has.
+std::vector<ParameterValue> ParseOverrides(const std::vector<std::string>& words,
+                                           const std::vector<const KernelRow*>& rows);
+
 // What a run over many configurations is told.
 struct RunOptions {
-  std::string count = "1e7", seed = "42";
-  std::optional<std::string> threads;
+  std::string default_count = "1e7", seed = "42";
+  std::optional<std::string> count, threads;
+  std::vector<std::string> overrides;
   bool quick = false;
 
   // Throw UsageError.
@@ -52,6 +58,7 @@ void AddJsonOption(CLI::App& command, std::optional<std::string>& path);
 CLI::Option* AddKernelsOption(CLI::App& command, std::vector<std::string>& globs);
 void AddDistributionOption(CLI::App& command, std::string& name);
 void AddSeedOption(CLI::App& command, std::string& seed);
+void AddSetOption(CLI::App& command, std::vector<std::string>& overrides);
 
 // Registers a subcommand with its options; `exit_code` gets what it returns. One for each file.
 void AddSweep(CLI::App& app, int& exit_code);

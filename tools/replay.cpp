@@ -18,6 +18,7 @@ namespace {
 
 struct Options {
   std::string kernel, distribution = "active", seed = "42", index;
+  std::vector<std::string> overrides;
   bool json = false;
 };
 
@@ -45,7 +46,8 @@ Replay Load(const Options& options) {
   for (const KernelRow& row : AllKernels()) {
     if (row.energy == &energy) replay.rows.push_back(&row);
   }
-  Batch batch(energy);
+  replay.plan.overrides = ParseOverrides(options.overrides, {replay.chosen});
+  Batch batch(energy, replay.plan.overrides);
   batch.Draw(*replay.plan.distribution, replay.plan.seed, replay.index, kTile);
   replay.x.assign(batch.X(0), batch.X(0) + energy.dofs);
   replay.p.assign(batch.P(0), batch.P(0) + energy.parameters.size());
@@ -87,8 +89,8 @@ void PrintMatrix(const KernelRow& row, const std::vector<double>& packed) {
 void Print(const Replay& replay, const Examiner& examiner) {
   const EnergyRow& energy = *replay.chosen->energy;
   const ConfigurationFigures& c = examiner.Configuration();
-  fmt::print("{}\n{}, seed {}, index {}\n\n", energy.name, replay.plan.distribution->name,
-             replay.plan.seed, replay.index);
+  fmt::print("{}\n{}{}, seed {}, index {}\n\n", energy.name, replay.plan.distribution->name,
+             Describe(replay.plan, energy), replay.plan.seed, replay.index);
   for (int i = 0; i < energy.dofs; ++i) {
     const double x = replay.x[static_cast<std::size_t>(i)];
     fmt::print("x{}[{}] {:>24.17g}  {}\n", i / energy.dimension, i % energy.dimension, x,
@@ -192,6 +194,7 @@ void AddReplay(CLI::App& app, int& exit_code) {
       ->required();
   AddDistributionOption(*command, options->distribution);
   AddSeedOption(*command, options->seed);
+  AddSetOption(*command, options->overrides);
   command->add_option("--index", options->index, "Index of the configuration (required)")
       ->type_name("N")
       ->required();

@@ -42,6 +42,7 @@ SweepPlan PlanOf(const Options& options) {
     throw UsageError(fmt::format("--distribution '{}': it cannot draw any of the rows asked for",
                                  options.distribution));
   }
+  plan.overrides = ParseOverrides(options.run.overrides, plan.rows);
   return plan;
 }
 
@@ -88,6 +89,7 @@ void AddSweep(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  definite sweep --quick\n"
       "  definite sweep --kernels '*/analytic/*' --kernels '*/numeric/f64' --distribution paper\n"
+      "  definite sweep --kernels '*/unsigned/*' --set side=-1\n"
       "  definite sweep --count 1e6 --threads 1 --json - | jq '.rows[].kernel'");
   command->callback([options, &exit_code] { exit_code = RunSweepCommand(*options); });
 }

@@ -27,6 +27,8 @@ void Batch::Draw(const Distribution& distribution, std::uint64_t seed, std::uint
   for (std::int64_t i = 0; i < size; ++i) {
     distribution.draw(target, seed, first + static_cast<std::uint64_t>(i),
                       x_.Data() + Offset(i, energy_->dofs), p_.Data() + Offset(i, Parameters()));
+    // Before the mirror: a parameter may tell where the energy is defined.
+    OverrideParameters(energy_->parameters, overrides_, p_.Data() + Offset(i, Parameters()));
     if (!energy_->mirror.empty()) Mirror(i);
   }
   Tile();

@@ -35,7 +35,10 @@ class AlignedDoubles {
 // `size` configurations of an energy, each number twice: in scalar tiles, and in tiles of eight.
 class Batch {
  public:
-  explicit Batch(const EnergyRow& energy) : energy_(&energy) {}
+  // Parameters in `overrides`, which must outlive the batch, have that value whatever the
+  // distribution says.
+  explicit Batch(const EnergyRow& energy, std::span<const ParameterValue> overrides = {})
+      : energy_(&energy), overrides_(overrides) {}
 
   // Draws the configurations first, first + 1, ... of a distribution; size is a multiple of kTile.
   // Those on the side where the energy is not defined are mirrored.
@@ -69,6 +72,7 @@ class Batch {
   }
 
   const EnergyRow* energy_;
+  std::span<const ParameterValue> overrides_;
   std::int64_t size_ = 0;
   AlignedDoubles x_, p_, tiled_x_, tiled_p_;
 };

@@ -100,7 +100,7 @@ bool RunCheckedPass(const SweepPlan& plan, EnergyResult& result, Progress& progr
     Statistics& mine = parts[static_cast<std::size_t>(omp_get_thread_num())];
     mine.rows.resize(rows.size());
     Examiner examiner(*result.energy, rows);
-    Batch batch(*result.energy);
+    Batch batch(*result.energy, plan.overrides);
     // H and P may be among the rows asked for: each runs once.
     std::vector<const KernelRow*> all = rows;
     all.push_back(&examiner.ExactRow());
@@ -129,7 +129,7 @@ bool RunCheckedPass(const SweepPlan& plan, EnergyResult& result, Progress& progr
           mine.rows[r].checksum += Checksum(of_rows[r], index);
         }
         examiner.Examine(batch.X(i), batch.P(i), exact.Of(i), nearest.Of(i), of_rows,
-                         DepthOf(index, plan.count));
+                         DepthOf(index, plan.count, plan.samples));
         Add(examiner, index, mine);
       }
       progress.Advance(static_cast<std::uint64_t>(size));
@@ -143,13 +143,13 @@ bool RunCheckedPass(const SweepPlan& plan, EnergyResult& result, Progress& progr
   }
 
   Examiner examiner(*result.energy, rows);
-  Batch batch(*result.energy);
+  Batch batch(*result.energy, plan.overrides);
   for (std::uint64_t index : WorstCases(result)) {
     batch.Draw(*plan.distribution, plan.seed, index, kTile);
     examiner.Examine(batch.X(0), batch.P(0), Depth::kTruth);
     for (std::size_t r = 0; r < rows.size(); ++r) {
       result.rows[r].worst_cases[index] = examiner.Row(r);
-      if (DepthOf(index, plan.count) != Depth::kTruth) {
+      if (!DepthOf(index, plan.count, plan.samples).truth) {
         result.rows[r].statistics.AddTruth(examiner.Row(r), index);
       }
     }

@@ -177,7 +177,7 @@ void Examiner::Examine(const double* x, const double* p, Packed h, Packed neares
       ExamineRow(r, x, p, exact, outputs[r], depth, definitions);
     }
   }
-  if (depth >= Depth::kTruth) ExamineEnergy(x, p, definitions);
+  if (depth.truth) ExamineEnergy(x, p, definitions);
 }
 
 std::size_t Examiner::TwinOf(std::size_t r, std::span<const Packed> outputs) const {
@@ -208,13 +208,13 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const
   figures.excess = Excess(FrobeniusDistance(f, exact.h), exact.least_change);
 
   if (norm > kGrowth * exact.h_norm) figures.verdict = Verdict::kDegraded;
-  if (depth >= Depth::kDefinition) {
+  if (depth.definition) {
     figures.defined = true;
     const double bound = kDegraded / configuration_.conditioning;
     double error = RelativeError(f, definitions.Of(*filters_[r]));
     // Written so that a NaN is doubted too.
     const bool ill_conditioned = !(kUnit * exact.h_norm <= kIllConditioned * exact.nearest_norm);
-    if (depth >= Depth::kTruth || ill_conditioned || !(error <= kDoubt * bound)) {
+    if (depth.truth || ill_conditioned || !(error <= kDoubt * bound)) {
       ExamineTruth(r, f, definitions);
       error = *figures.rounding * energy_->dofs * kUnit;
       if (!(*figures.conditioned_rounding <= kRatioBound)) breaks(Property::kAccurate);
@@ -226,7 +226,7 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const
     breaks(Property::kPsd);
   }
   if (norm == 0 && exact.h_norm != 0) figures.verdict = Verdict::kSilentZero;
-  if (depth >= Depth::kSpectral) {
+  if (depth.spectrum) {
     ExamineSpectrum(r, x, p, exact, f);
     const double bound = Bound();
     if (*figures.majorises * exact.h_norm > bound * (exact.h_norm + norm)) {

@@ -30,13 +30,19 @@ inline constexpr std::array<std::string_view, kVerdictCount> kVerdictNames = {
     "pass",        "degraded",     "non_psd",       "non_finite",
     "silent_zero", "inconsistent", "out_of_domain", "crash"};
 
-// How closely to look. Each level includes those before it.
-enum class Depth {
-  kCheap,       // distance, excess, finite, PSD yes or no: microseconds
-  kDefinition,  // the filter's definition in double; where in doubt, in float128
-  kSpectral,    // eigenvalues, majorisation, relabelling
-  kTruth,       // everything in float128: milliseconds
+// What to look at besides distance, excess, finite, PSD yes or no, which cost microseconds.
+struct Depth {
+  bool definition;  // the filter's definition in double; where in doubt, in float128
+  bool spectrum;    // eigenvalues, majorisation, relabelling
+  bool truth;       // everything in float128: milliseconds
+
+  static const Depth kCheap, kDefinition, kSpectral, kTruth;  // each includes those before it
+  friend bool operator==(const Depth&, const Depth&) = default;
 };
+inline constexpr Depth Depth::kCheap = {false, false, false};
+inline constexpr Depth Depth::kDefinition = {true, false, false};
+inline constexpr Depth Depth::kSpectral = {true, true, false};
+inline constexpr Depth Depth::kTruth = {true, true, true};
 
 // What one row made of one configuration. Empty where the depth did not ask for it.
 struct RowFigures {

@@ -23,11 +23,14 @@ Json Number(double value) {
 }
 
 Json Point(const SweepPlan& plan, const EnergyRow& energy, const Worst& worst,
-           const std::optional<double>& exact) {
-  Batch batch(energy);
-  batch.Draw(*plan.distribution, plan.seed, worst.index, kTile);
+           const std::optional<double>& exact, Detail detail) {
   Json point = {{"value", Number(worst.value)}, {"index", worst.index}};
   point["exact"] = exact ? Number(*exact) : Json();
+  point["x"] = nullptr;
+  point["p"] = nullptr;
+  if (detail == Detail::kBrief) return point;
+  Batch batch(energy, plan.overrides);
+  batch.Draw(*plan.distribution, plan.seed, worst.index, kTile);
   for (int i = 0; i < energy.dofs; ++i) point["x"].push_back(HexFloat(batch.X(0)[i]));
   for (std::size_t i = 0; i < energy.parameters.size(); ++i) {
     point["p"].push_back(HexFloat(batch.P(0)[i]));
@@ -51,7 +54,7 @@ Json ToJson(const Figure& figure, const SweepPlan& plan, const EnergyRow& energy
                {"median", Number(summary->median)},
                {"p99", Number(summary->p99)},
                {"p999", Number(summary->p999)},
-               {"max", Point(plan, energy, summary->max, value)}};
+               {"max", Point(plan, energy, summary->max, value, detail)}};
   json["histogram"] = nullptr;
   if (detail == Detail::kWithHistograms) {
     json["histogram"] = Json::array();
@@ -129,6 +132,9 @@ Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowR
   row["scalar"] = r.row->scalar;
   row["source"] = fmt::format("{}; {}", energy.energy->source, r.row->source);
   row["distribution"] = plan.distribution->name;
+  for (const ParameterValue& p : plan.overrides) {
+    if (HasParameter(*energy.energy, p.name)) row["set"][std::string(p.name)] = p.value;
+  }
   row["count"] = e.count;
   row["active"] = e.active;
   row["active_fraction"] = e.count ? Json(Fraction(e.active, e.count)) : Json();
@@ -143,15 +149,18 @@ Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowR
   const auto figure = [&](const Figure& f, std::optional<double> RowFigures::*exact) {
     return ToJson(f, plan, *energy.energy, r.worst_cases, exact, detail);
   };
+  const auto unless_brief = [&](const Figure& f) {
+    return detail == Detail::kBrief ? Json() : figure(f, nullptr);
+  };
   row["accuracy"] = {{"distance", figure(s.distance, &RowFigures::distance)},
                      {"excess", figure(s.excess, &RowFigures::excess)},
-                     {"rounding", figure(s.rounding, nullptr)},
-                     {"conditioned_rounding", figure(s.conditioned_rounding, nullptr)},
+                     {"rounding", unless_brief(s.rounding)},
+                     {"conditioned_rounding", unless_brief(s.conditioned_rounding)},
                      {"psd_defect", figure(s.psd_defect, nullptr)},
-                     {"majorises", figure(s.majorises, nullptr)},
+                     {"majorises", unless_brief(s.majorises)},
                      {"relabelling", figure(s.relabelling, nullptr)},
-                     {"value_rounding", figure(e.value_rounding, nullptr)},
-                     {"gradient_rounding", figure(e.gradient_rounding, nullptr)},
+                     {"value_rounding", unless_brief(e.value_rounding)},
+                     {"gradient_rounding", unless_brief(e.gradient_rounding)},
                      {"flips", s.flips},
                      {"flip_checks", s.flip_checks},
                      {"defined", s.defined}};
@@ -211,21 +220,49 @@ std::string WithCommas(std::uint64_t value) {
 }
 
 Json ToJson(const SweepResult& result, const std::vector<std::string>& command, Detail detail) {
+  return ToJson({&result, 1}, command, detail);
+}
+
+Json ToJson(std::span<const SweepResult> results, const std::vector<std::string>& command,
+            Detail detail) {
+  const SweepResult& first = results.front();
   Json json;
   json["schema"] = "definite/1";
   json["protocol"] = ProtocolHash();
   json["command"] = command;
-  json["machine"] = DescribeMachine(result.load_before, IsNoisy(result));
+  json["machine"] = DescribeMachine(first.load_before, std::ranges::any_of(results, IsNoisy));
   json["build"] = DescribeBuild();
-  json["seed"] = result.plan.seed;
-  json["partial"] = result.partial;
+  json["seed"] = first.plan.seed;
+  json["partial"] = std::ranges::any_of(results, &SweepResult::partial);
   json["rows"] = Json::array();
-  for (const EnergyResult& energy : result.energies) {
-    for (const RowResult& r : energy.rows) {
-      json["rows"].push_back(RowToJson(result, energy, r, detail));
+  for (const SweepResult& result : results) {
+    for (const EnergyResult& energy : result.energies) {
+      for (const RowResult& r : energy.rows) {
+        json["rows"].push_back(RowToJson(result, energy, r, detail));
+      }
     }
   }
   return json;
+}
+
+std::string Dump(const Json& json, Detail detail) {
+  // A path among the command's words need not be UTF-8.
+  constexpr auto kReplace = Json::error_handler_t::replace;
+  if (detail != Detail::kBrief) return json.dump(1, ' ', false, kReplace) + "\n";
+  std::string text = "{";
+  for (const auto& [key, value] : json.items()) {
+    text += fmt::format("{}\n \"{}\": ", text == "{" ? "" : ",", key);
+    if (key != "rows") {
+      text += value.dump(-1, ' ', false, kReplace);
+      continue;
+    }
+    std::string rows;
+    for (const Json& row : value) {
+      rows += fmt::format("{}\n  {}", rows.empty() ? "" : ",", row.dump(-1, ' ', false, kReplace));
+    }
+    text += "[" + rows + "\n ]";
+  }
+  return text + "\n}\n";
 }
 
 std::string ToTable(const SweepResult& result) {
@@ -233,10 +270,11 @@ std::string ToTable(const SweepResult& result) {
   for (const EnergyResult& energy : result.energies) {
     const EnergyStatistics& e = energy.statistics;
     table += fmt::format(
-        "{}\n{}, seed {}: {} configurations, {:.4g} % active, {:.4g} % of them "
+        "{}\n{}{}, seed {}: {} configurations, {:.4g} % active, {:.4g} % of them "
         "indefinite\n\n",
-        energy.energy->name, result.plan.distribution->name, result.plan.seed, WithCommas(e.count),
-        100 * Fraction(e.active, e.count), 100 * Fraction(e.indefinite, e.active));
+        energy.energy->name, result.plan.distribution->name, Describe(result.plan, *energy.energy),
+        result.plan.seed, WithCommas(e.count), 100 * Fraction(e.active, e.count),
+        100 * Fraction(e.indefinite, e.active));
     table += fmt::format("{:<19}{:<6}{:>7}{:>8} |{:>24} |{:>8}{:>8} |\n", "", "", "ns per",
                          "numeric", "distance to nearest  ", "rounding", "PSD");
     table += fmt::format("{:<19}{:<6}{:>7}{:>8} |{:>8}{:>8}{:>8} |{:>8}{:>8} | {}\n", "filter", "",
@@ -259,8 +297,21 @@ std::string ToTable(const SweepResult& result) {
 }
 
 std::string ReplayCommand(const SweepPlan& plan, const KernelRow& row, std::uint64_t index) {
-  return fmt::format("definite replay --kernel {} --distribution {} --seed {} --index {}", row.name,
-                     plan.distribution->name, plan.seed, index);
+  std::string command =
+      fmt::format("definite replay --kernel {} --distribution {} --seed {} --index {}", row.name,
+                  plan.distribution->name, plan.seed, index);
+  for (const ParameterValue& p : plan.overrides) {
+    if (HasParameter(*row.energy, p.name)) command += fmt::format(" --set {}={}", p.name, p.value);
+  }
+  return command;
+}
+
+std::string Describe(const SweepPlan& plan, const EnergyRow& energy) {
+  std::string text;
+  for (const ParameterValue& p : plan.overrides) {
+    if (HasParameter(energy, p.name)) text += fmt::format(", {} = {}", p.name, p.value);
+  }
+  return text;
 }
 
 std::string BrokenPromises(const SweepResult& result) {

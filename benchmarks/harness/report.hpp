@@ -3,16 +3,25 @@
 // A sweep's result as JSON (results/schema.json) and as a table for people.
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "benchmarks/harness/sweep.hpp"
 
 namespace definite {
 
-enum class Detail { kSummaries, kWithHistograms };
+// How much of the figures is written. kBrief is for tables over many energies: distance, excess,
+// PSD defect and relabelling, worst cases by their index alone.
+enum class Detail { kBrief, kSummaries, kWithHistograms };
 
 nlohmann::ordered_json ToJson(const SweepResult& result, const std::vector<std::string>& command,
                               Detail detail = Detail::kWithHistograms);
+// The rows of several sweeps, in their order.
+nlohmann::ordered_json ToJson(std::span<const SweepResult> results,
+                              const std::vector<std::string>& command, Detail detail);
+
+// JSON as text: one key a line, but each row in one line if brief.
+std::string Dump(const nlohmann::ordered_json& json, Detail detail);
 
 // Readable at 100 columns.
 std::string ToTable(const SweepResult& result);
@@ -22,6 +31,9 @@ std::string ReplayCommand(const SweepPlan& plan, const KernelRow& row, std::uint
 
 // A line for each promise that a row broke, with its replay command; empty if none.
 std::string BrokenPromises(const SweepResult& result);
+
+// ", side = -1, eps = 0.5": the energy's parameters that the plan sets.
+std::string Describe(const SweepPlan& plan, const EnergyRow& energy);
 
 // 3.25 as "0x1.ap+1": read back exactly by any strtod.
 std::string HexFloat(double value);

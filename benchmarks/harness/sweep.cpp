@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "benchmarks/harness/checked_pass.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
@@ -78,40 +79,54 @@ void EnergyStatistics::Merge(const EnergyStatistics& other) {
   gradient_rounding.Merge(other.gradient_rounding);
 }
 
-Depth DepthOf(std::uint64_t index, std::uint64_t count) {
-  // Every so many configurations, so that there are at most `samples`, and at most one in `every`.
-  const auto sampled = [&](std::uint64_t samples, std::uint64_t every) {
-    return index % std::max(every, (count + samples - 1) / samples) == 0;
+Depth DepthOf(std::uint64_t index, std::uint64_t count, const Samples& samples) {
+  // Every so many configurations, so that there are at most `most`, and at most one in `every`.
+  const auto sampled = [&](std::uint64_t most, std::uint64_t every) {
+    return most > 0 && index % std::max(every, (count + most - 1) / most) == 0;
   };
-  if (sampled(10'000, 100)) return Depth::kTruth;
-  if (sampled(100'000, 10)) return Depth::kSpectral;
-  if (sampled(1'000'000, 1)) return Depth::kDefinition;
-  return Depth::kCheap;
+  if (sampled(samples.truth, 100)) return Depth::kTruth;
+  Depth depth = Depth::kCheap;
+  depth.spectrum = sampled(samples.spectrum, 10);
+  depth.definition = sampled(samples.definition, 1);
+  return depth;
+}
+
+std::vector<SweepResult> RunSweeps(std::span<const SweepPlan> plans, Progress& progress) {
+  std::vector<SweepResult> results;
+  std::uint64_t timed = 0, checked = 0;
+  for (const SweepPlan& plan : plans) {
+    SweepResult& result = results.emplace_back();
+    result.plan = plan;
+    if (double load; getloadavg(&load, 1) == 1) result.load_before = load;
+    for (const KernelRow* row : plan.rows) {
+      auto at = std::ranges::find(result.energies, row->energy, &EnergyResult::energy);
+      if (at == result.energies.end()) {
+        result.energies.push_back({row->energy, {}, {}, 0, 0});
+        at = result.energies.end() - 1;
+      }
+      at->rows.push_back({row, {}, {}, {}});
+    }
+    const std::uint64_t total = plan.count * result.energies.size();
+    checked += total;
+    if (plan.timing) timed += total;
+  }
+  if (timed) progress.Start("timed pass", timed);
+  for (SweepResult& result : results) {
+    if (!result.plan.timing) continue;
+    for (EnergyResult& energy : result.energies) RunTimedPass(result.plan, energy, progress);
+  }
+  progress.Start("checked pass", checked);
+  for (SweepResult& result : results) {
+    for (EnergyResult& energy : result.energies) {
+      if (!RunCheckedPass(result.plan, energy, progress)) result.partial = true;
+    }
+  }
+  progress.Finish();
+  return results;
 }
 
 SweepResult RunSweep(const SweepPlan& plan, Progress& progress) {
-  SweepResult result;
-  result.plan = plan;
-  if (double load; getloadavg(&load, 1) == 1) result.load_before = load;
-  for (const KernelRow* row : plan.rows) {
-    auto at = std::ranges::find(result.energies, row->energy, &EnergyResult::energy);
-    if (at == result.energies.end()) {
-      result.energies.push_back({row->energy, {}, {}, 0, 0});
-      at = result.energies.end() - 1;
-    }
-    at->rows.push_back({row, {}, {}, {}});
-  }
-  const std::uint64_t total = plan.count * result.energies.size();
-  if (plan.timing) {
-    progress.Start("timed pass", total);
-    for (EnergyResult& energy : result.energies) RunTimedPass(plan, energy, progress);
-  }
-  progress.Start("checked pass", total);
-  for (EnergyResult& energy : result.energies) {
-    if (!RunCheckedPass(plan, energy, progress)) result.partial = true;
-  }
-  progress.Finish();
-  return result;
+  return std::move(RunSweeps({&plan, 1}, progress).front());
 }
 
 }  // namespace definite

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,17 @@
 
 namespace definite {
 
+// At most how many configurations of a sweep are looked at how closely (examine.hpp); by default
+// what docs/protocol.md says.
+struct Samples {
+  std::uint64_t definition = 1'000'000, spectrum = 100'000, truth = 10'000;
+};
+
 struct SweepPlan {
   std::vector<const KernelRow*> rows;
   const Distribution* distribution = nullptr;
+  std::vector<ParameterValue> overrides;  // of the energies that have such a parameter
+  Samples samples;
   std::uint64_t seed = 42;
   std::uint64_t count = 10'000'000;
   int threads = 1;
@@ -85,7 +94,10 @@ struct SweepResult {
 // then is a prefix of the configurations, and the result says that it is partial.
 SweepResult RunSweep(const SweepPlan& plan, Progress& progress);
 
+// Runs the timed passes of all plans, then the checked ones; the progress is that of all.
+std::vector<SweepResult> RunSweeps(std::span<const SweepPlan> plans, Progress& progress);
+
 // How closely configuration `index` of `count` is looked at.
-Depth DepthOf(std::uint64_t index, std::uint64_t count);
+Depth DepthOf(std::uint64_t index, std::uint64_t count, const Samples& samples = {});
 
 }  // namespace definite

@@ -119,7 +119,7 @@ void RunTimedPass(const SweepPlan& plan, EnergyResult& result, Progress& progres
       Share& mine = shares[static_cast<std::size_t>(omp_get_thread_num())];
       // One thread: its processor time. More: wall time, since they share the machine.
       double (*const clock)() = threads == 1 ? ThreadSeconds : WallSeconds;
-      Batch block_of_all(energy);
+      Batch block_of_all(energy, plan.overrides);
       Parts parts(energy);
       AlignedDoubles ring;
       std::size_t outputs = 0;

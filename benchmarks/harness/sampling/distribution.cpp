@@ -1,5 +1,7 @@
 #include "benchmarks/harness/sampling/distribution.hpp"
 
+#include <algorithm>
+
 namespace definite {
 
 const Distribution* FindDistribution(std::string_view name) {
@@ -9,15 +11,24 @@ const Distribution* FindDistribution(std::string_view name) {
   return nullptr;
 }
 
-void FillParameters(std::span<const Parameter> parameters,
-                    std::span<const ParameterValue> overrides, double* p) {
+bool HasParameter(const EnergyRow& energy, std::string_view name) {
+  return std::ranges::find(energy.parameters, name, &Parameter::name) != energy.parameters.end();
+}
+
+void OverrideParameters(std::span<const Parameter> parameters,
+                        std::span<const ParameterValue> overrides, double* p) {
   for (const Parameter& parameter : parameters) {
-    *p = parameter.value;
     for (const ParameterValue& replacement : overrides) {
       if (replacement.name == parameter.name) *p = replacement.value;
     }
     ++p;
   }
+}
+
+void FillParameters(std::span<const Parameter> parameters,
+                    std::span<const ParameterValue> overrides, double* p) {
+  std::ranges::transform(parameters, p, &Parameter::value);
+  OverrideParameters(parameters, overrides, p);
 }
 
 }  // namespace definite

@@ -10,7 +10,7 @@
 
 namespace definite {
 
-// A parameter that a distribution sets, whatever the energy's default.
+// A parameter that is set, whatever the energy's default.
 struct ParameterValue {
   std::string_view name;
   double value;
@@ -46,6 +46,12 @@ concept DistributionType = requires(const DrawTarget& target, Draws& draws, doub
   { D::Supports(target.stencil) } -> std::same_as<bool>;
   D::DrawCoordinates(target, draws, x);
 };
+
+bool HasParameter(const EnergyRow& energy, std::string_view name);
+
+// Those of p that have a value in `overrides` get it.
+void OverrideParameters(std::span<const Parameter> parameters,
+                        std::span<const ParameterValue> overrides, double* p);
 
 // p = the energy's parameters, with those of the same name in `overrides` replaced.
 void FillParameters(std::span<const Parameter> parameters,

@@ -1,5 +1,3 @@
-#include "benchmarks/papers/shi_kim_2023.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,13 +7,19 @@
 #include <stdexcept>
 
 #include "benchmarks/harness/report.hpp"
-#include "benchmarks/papers/markdown.hpp"
+#include "benchmarks/plans/markdown.hpp"
+#include "benchmarks/plans/plan.hpp"
+#include "benchmarks/plans/result.hpp"
 
 namespace definite {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+using definite::Show;  // beside those of this file
+
+constexpr std::string_view kDistribution = "paper";
 
 // Table 1: seconds for 10^7 random arrangements.
 struct PublishedRow {
@@ -55,7 +59,7 @@ const std::vector<std::pair<std::string, std::string>> kEnvelopeFilters = {
 const Json& RowOf(const Json& result, const std::string& energy, const std::string& filter) {
   const std::string name = energy + "/" + filter;
   for (const Json& row : result.at("rows")) {
-    if (row.at("kernel") == name && row.at("distribution") == ShiKim2023::kDistribution) return row;
+    if (row.at("kernel") == name && row.at("distribution") == kDistribution) return row;
   }
   throw std::runtime_error("the result lacks the row " + name);
 }
@@ -99,41 +103,11 @@ std::optional<Interval> Inverse(const std::optional<Interval>& r) {
   return Interval{1 / r->median, 1 / r->high, 1 / r->low};
 }
 
-double NumberOf(const Json& value) {
-  if (value.is_string()) {
-    return value == "nan" ? std::numeric_limits<double>::quiet_NaN()
-                          : std::numeric_limits<double>::infinity();
-  }
-  return value;
-}
-
-// A figure's entry, such as distance / median.
-std::optional<double> Entry(const Json& row, const std::string& figure, const std::string& entry) {
-  const Json& f = row.at("accuracy").at(figure);
-  if (f.is_null()) return std::nullopt;
-  return NumberOf(entry == "max" ? f.at("max").at("value") : f.at(entry));
-}
-
-std::string Show(const std::optional<double>& value, const char* format) {
-  return value ? fmt::format(fmt::runtime(format), *value) : "-";
-}
-std::string Percent(const Json& fraction) {
-  return fraction.is_null() ? "-" : fmt::format("{:.4g}", 100 * fraction.get<double>());
-}
 std::string Show(const std::optional<Interval>& r, const char* format) {
   return r ? fmt::format(fmt::runtime(format), r->median) : "-";
 }
 std::string ShowInterval(const std::optional<Interval>& r) {
   return r ? fmt::format("{:.2f} [{:.2f}, {:.2f}]", r->median, r->low, r->high) : "not timed";
-}
-
-Json Claim(const std::string& claim, const std::string& theirs, const std::string& ours,
-           const std::string& verdict, const std::string& reason) {
-  return {{"claim", claim},
-          {"theirs", theirs},
-          {"ours", ours},
-          {"verdict", verdict},
-          {"reason", reason}};
 }
 
 // An interrupted run lacks some figures, one without timing all times.
@@ -244,8 +218,6 @@ Json FrozenClaim(const Json& result) {
                   holds ? "it is" : "it is not", *exact));
 }
 
-std::string Paragraph(const std::string& text) { return "\n" + Wrapped(text, 98, ""); }
-
 // Seconds for 10^7 of "all" pairs or of the "active" ones.
 std::string Table1(const Json& result, const std::string& pairs) {
   const auto seconds = [&](const PublishedRow& p, const std::string& filter) {
@@ -277,7 +249,7 @@ std::string Table1(const Json& result, const std::string& pairs) {
              : timing.at("clock") == "wall"
                  ? fmt::format("from wall time on {} threads", timing.at("threads").get<int>())
                  : "CPU time of one thread",
-             WithCommas(first.at("count").get<std::uint64_t>()), ShiKim2023::kDistribution,
+             WithCommas(first.at("count").get<std::uint64_t>()), kDistribution,
              result.at("seed").get<std::uint64_t>()));
 }
 
@@ -363,25 +335,7 @@ std::string Claims(const Json& claims) {
   return text;
 }
 
-std::string Provenance(const Json& result) {
-  const Json& machine = result.at("machine");
-  const Json& build = result.at("build");
-  const auto known = [](const Json& value) {
-    return value.is_null()     ? "unknown"
-           : value.is_string() ? value.get<std::string>()
-                               : fmt::format("{:.2f}", value.get<double>());
-  };
-  return Paragraph(fmt::format(
-      "Machine: {}, {} cores, load {}{}. Build: {}, {}, {}, Eigen {}, commit {}.",
-      known(machine.at("cpu")), machine.at("cores").get<int>(), known(machine.at("load_average")),
-      machine.at("noisy").get<bool>() ? " (noisy)" : "", build.at("compiler").get<std::string>(),
-      build.at("flags").get<std::string>(), build.at("isa").get<std::string>(),
-      build.at("eigen").get<std::string>(), build.at("commit").get<std::string>()));
-}
-
-}  // namespace
-
-std::vector<std::string> ShiKim2023::Rows() {
+std::vector<PlannedSweep> Sweeps() {
   std::vector<std::string> rows;
   for (const PublishedRow& published : kTable1) {
     for (const auto& [filter, label] : kFilters) rows.push_back(published.energy + "/" + filter);
@@ -389,10 +343,10 @@ std::vector<std::string> ShiKim2023::Rows() {
   for (const auto& [filter, label] : kEnvelopeFilters) {
     rows.push_back(kEnvelope + "/" + filter);
   }
-  return rows;
+  return {{rows, kDistribution, {}}};
 }
 
-Json ShiKim2023::Claims(const Json& result) {
+Json AllClaims(const Json& result) {
   Json claims = Json::array();
   for (const PublishedRow& p : kTable1) claims.push_back(SpeedClaim(result, p));
   for (const PublishedRow& p : kTable1) claims.push_back(OverheadClaim(result, p));
@@ -402,9 +356,24 @@ Json ShiKim2023::Claims(const Json& result) {
   return claims;
 }
 
-std::string ShiKim2023::Markdown(const Json& result) {
+std::string Markdown(const Json& result) {
   return Table1(result, "all") + Table1(result, "active") + Forms(result) + Accuracy(result) +
-         definite::Claims(result.at("claims")) + Provenance(result);
+         Claims(result.at("claims")) + Provenance(result);
+}
+
+}  // namespace
+
+Plan ShiKim2023() {
+  return {"shi-kim-2023",
+          "Table 1 and the claims of Shi & Kim 2023",
+          "1e7",
+          true,
+          false,
+          Detail::kSummaries,
+          {},
+          Sweeps,
+          AllClaims,
+          Markdown};
 }
 
 }  // namespace definite

@@ -1,4 +1,4 @@
-#include "benchmarks/papers/markdown.hpp"
+#include "benchmarks/plans/markdown.hpp"
 
 #include <fmt/format.h>
 
