@@ -113,10 +113,13 @@ double OtherScales(const Subject& s, const Configuration& c, const std::vector<d
     for (double& v : scaled.x) v *= unit;
     for (std::size_t i = 0; i < scaled.p.size(); ++i) {
       const int power = s.row->energy->parameters[i].length_power;
-      // Parameters of the tests' energies have squares of lengths, which do not go that far.
-      if (power > 1 && (unit < 1e-70 || unit > 1e70)) return worst;
       scaled.p[i] *= std::pow(unit, power);
     }
+    // A length squared or to the power of four does not go as far as a length.
+    const bool representable = std::ranges::equal(c.p, scaled.p, [](double p, double q) {
+      return p == 0 || (std::isnormal(q) && std::isfinite(q));
+    });
+    if (!representable) continue;
     // Rounding the scaled coordinates moves x as an inexact rotation does.
     const bool exact = std::frexp(unit, std::array<int, 1>().data()) == 0.5;
     if (!exact && !c.well_conditioned) continue;
@@ -196,14 +199,16 @@ double OffScalar(const Subject& s, const Configuration& c, const std::vector<dou
 }
 
 // What the distributions leave at its default: two of three configurations get another stiffness
-// and a side of their own, if the energy is defined on it.
+// and a side of their own, if the energy is defined on it; each has one of five thresholds.
 void VaryParameters(const EnergyRow& energy, int i, Configuration& c) {
   const double stiffness[] = {1, 3.5, 0.3}, side[] = {0, 1, -1};
+  const double threshold[] = {1, 0.1, 10, 100, 1e-9};
   const auto* reference = reference::FindEnergy<double>(energy.name);
   std::vector<double>& p = c.p;
   for (std::size_t j = 0; j < p.size(); ++j) {
     const std::string_view name = energy.parameters[j].name;
     if (name == "k" || name == "mu") p[j] = stiffness[i % 3];
+    if (name == "ex") p[j] = threshold[i % 5];
     if (name == "side") {
       p[j] = side[i % 3];
       if (!reference->in_domain(c.x.data(), p.data())) p[j] = 0;
@@ -248,6 +253,55 @@ std::vector<Configuration> DegenerateVertexFaces() {
       VertexFaceCase("side flipped", e0, e1, 0.3, 0.4, -0.05, 0.1, 0),
   };
   cases.back().p[2] = -1;
+  return cases;
+}
+
+// Two edges e0 and e1, x2 - x0 = e2.
+Configuration EdgeEdgeCase(std::string name, std::vector<double> e0, std::vector<double> e1,
+                           std::vector<double> e2, double side, double ex) {
+  Configuration r{std::move(name), {}, {1, 0.1, side, ex}, false, 1};
+  r.x.resize(12);
+  for (std::size_t i = 0; i < 3; ++i) {
+    r.x[3 + i] = e0[i];
+    r.x[6 + i] = e2[i];
+    r.x[9 + i] = e2[i] + e1[i];
+  }
+  return r;
+}
+
+// Edges that are parallel or nearly so, and at the threshold, for energies that have one.
+std::vector<Configuration> DegenerateEdgeEdges() {
+  const std::vector<double> ex = {1, 0, 0}, ey = {0, 1, 0}, e0 = {0.875, 0.25, -0.375},
+                            half = {0.4375, 0.125, -0.1875}, back = {-1.75, -0.5, 0.75};
+  std::vector<Configuration> cases = {
+      EdgeEdgeCase("parallel", ex, ex, {0.25, 0, 0.05}, 1, 1),
+      EdgeEdgeCase("parallel, inside each other", ex, ex, {0.25, 0, 0.05}, -1, 1),
+      EdgeEdgeCase("parallel, head to tail", ex, ex, {1.03, 0.02, 0.05}, 1, 1),
+      EdgeEdgeCase("parallel, askew and shorter", e0, half, {0.25, 0.1, -0.05}, 1, 0.3),
+      EdgeEdgeCase("antiparallel, askew and longer", e0, back, {1.1, 0.2, -0.45}, 1, 20),
+      EdgeEdgeCase("parallel, nearly touching", ex, ex, {0.25, 0, 1e-6}, 1, 1),
+      EdgeEdgeCase("parallel, the threshold tiny", ex, ex, {0.25, 0, 0.05}, 1, 1e-30),
+      EdgeEdgeCase("parallel, the threshold huge", ex, ex, {0.25, 0, 0.05}, 1, 1e30),
+      EdgeEdgeCase("parallel, one edge 1e-6", {1e-6, 0, 0}, ex, {-0.25, 0, 0.05}, 1, 1),
+      EdgeEdgeCase("parallel, the other 1e-6", ex, {-1e-6, 0, 0}, {0.25, 0, 0.05}, 1, 1e-12),
+      EdgeEdgeCase("c = ex", ex, ey, {0.25, -0.5, 0.05}, 1, 1),
+      EdgeEdgeCase("c below ex by a roundoff", ex, ey, {0.25, -0.5, 0.05}, 1, 1 + 0x1p-52),
+      EdgeEdgeCase("c = ex at an end", ex, ey, {0.25, 0.03, 0.05}, 1, 1),
+  };
+  for (const double angle :
+       {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e-10, 1e-11, 1e-12, 1e-14}) {
+    const std::string at = "angle " + std::to_string(std::log10(angle));
+    // Crossing in the middle, where the sine is large enough.
+    if (angle > 1e-8) {
+      cases.push_back(
+          EdgeEdgeCase(at + ", crossing", ex, {1, angle, 0}, {0, -angle / 2, 0.05}, 1, 1));
+    }
+    // Nearest at the start of one, clearly: of parallel edges no point is nearer than another.
+    cases.push_back(EdgeEdgeCase(at + ", rising", ex, {1, angle, angle}, {0.25, 0, 0.05}, 1, 1));
+    cases.push_back(EdgeEdgeCase(at + ", apart", ex, {1, -angle, angle}, {1.03, 0.02, 0.05}, 1, 1));
+    cases.push_back(EdgeEdgeCase(at + ", half the threshold", ex, {1, angle, angle},
+                                 {0.25, 0, 0.05}, 1, 4 * angle * angle));
+  }
   return cases;
 }
 
@@ -324,6 +378,17 @@ std::vector<Configuration> Configurations(const EnergyRow& energy) {
       for (std::size_t j = c.p.size(); j < energy.parameters.size(); ++j) {
         c.p.push_back(energy.parameters[j].value);
       }
+      c.conditioning = ConditioningOf(energy, c.x, c.p);
+      all.push_back(c);
+    }
+  }
+  if (std::ranges::find(energy.parameters, "ex", &Parameter::name) != energy.parameters.end()) {
+    for (Configuration& c : DegenerateEdgeEdges()) {
+      for (std::size_t j = c.p.size(); j < energy.parameters.size(); ++j) {
+        c.p.push_back(energy.parameters[j].value);
+      }
+      const auto* reference = reference::FindEnergy<double>(energy.name);
+      if (!reference->in_domain(c.x.data(), c.p.data())) continue;
       c.conditioning = ConditioningOf(energy, c.x, c.p);
       all.push_back(c);
     }
