@@ -1313,6 +1313,7 @@ TEST(Mollified, FrameHessianHasBlocksBetweenInsides) {
       std::copy(pair.x.begin(), pair.x.end(), x.entries.begin());
       const Matrix<Quad> frame = s * x;
       const Vec3<Quad> c0 = Block(&frame[0], 0), c1 = Block(&frame[0], 1);
+      EXPECT_LT(Norm(c0 - pair.Edge().e0), Quad(1e-30));
       const Quad a = Norm(c0), b = Norm(c1);
       const Vec3<Quad> t0 = Quad(1 / a) * c0, t1 = Quad(1 / b) * c1, n = Cross(t0, t1);
       const Quad l = Dot(n, Block(&frame[0], 2)), sign = l < 0 ? -1 : 1;
