@@ -278,7 +278,7 @@ std::vector<Configuration> DegenerateEdgeEdges() {
       EdgeEdgeCase("parallel, inside each other", ex, ex, {0.25, 0, 0.05}, -1, 1),
       EdgeEdgeCase("parallel, head to tail", ex, ex, {1.03, 0.02, 0.05}, 1, 1),
       EdgeEdgeCase("parallel, askew and shorter", e0, half, {0.25, 0.1, -0.05}, 1, 0.3),
-      EdgeEdgeCase("antiparallel, askew and longer", e0, back, {1.1, 0.2, -0.45}, 1, 20),
+      EdgeEdgeCase("antiparallel, askew and longer", e0, back, {1.1, 0.25, -0.45}, 1, 20),
       EdgeEdgeCase("parallel, nearly touching", ex, ex, {0.25, 0, 1e-6}, 1, 1),
       EdgeEdgeCase("parallel, the threshold tiny", ex, ex, {0.25, 0, 0.05}, 1, 1e-30),
       EdgeEdgeCase("parallel, the threshold huge", ex, ex, {0.25, 0, 0.05}, 1, 1e30),

@@ -151,7 +151,7 @@ DEFINITE_INLINE MollifiedEntries<T> EntriesOf(const MollifiedFrame<T>& frame,
   return h;
 }
 
-// A mode at y.first on u and y.second on v of [[a, b], [b, d]], and the other one.
+// Both eigenvectors of [[h0, h1], [h1, h2]] on u and v, as the modes from `at` on.
 template <class T, int K>
 DEFINITE_INLINE void SetPair(const T (&h)[3], const Vec<T, 9>& u, const Vec<T, 9>& v, int at,
                              Modes<T, 9, K>& modes) {
