@@ -100,7 +100,6 @@ concept EnergyOver = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams
     E::template HessianModes<Set::kFrame, Part::kAll>(x, p).v[0]
     } -> std::same_as<Vec<T, E::kDofs>&&>;
   E::template HessianModes<Set::kFrame, Part::kPositive>(x, p);
-  E::template HessianModes<Set::kFrame, Part::kCurvature>(x, p);
 };
 
 template <class R, class T, int D>
@@ -128,8 +127,8 @@ struct FrameTerm {
   T map[F][D];
 };
 
-// An energy that shows its reduced frame: a tuple of terms that sum to its Hessian, the curvature
-// being the first mode of the first.
+// An energy that shows its reduced frame: a tuple of terms that sum to its Hessian, the curvature,
+// if it offers one, being the first mode of the first.
 template <class E, class T>
 concept WithFrame = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
   std::get<0>(E::FrameTerms(x, p)).map;
@@ -139,6 +138,12 @@ concept WithFrame = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>
 template <class E, class T, Set kSet>
 concept OffersSet = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
   E::template HessianModes<kSet, Part::kAll>(x, p);
+};
+
+// An energy that is a penalty of one length, and so has a curvature term of its own.
+template <class E, class T>
+concept OffersCurvature = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+  E::template HessianModes<Set::kFrame, Part::kCurvature>(x, p);
 };
 
 // The same vectors with map(lambda).

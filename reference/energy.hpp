@@ -41,7 +41,7 @@ struct Energy {
   double (*conditioning)(const T* x, const T* p);
   T (*value)(const T* x, const T* p);
   Derivatives<T> (*derivatives)(const T* x, const T* p);
-  T (*length)(const T* x, const T* p);             // s, where psi is a penalty of a scalar s(x)
+  T (*length)(const T* x, const T* p);             // s, a scalar s(x) that psi is a penalty of
   Matrix<T> (*curvature)(const T* x, const T* p);  // psi''(s) grad s grad s^T, dofs x dofs
   // The terms that sum to the Hessian; the first one's map is S, c = S x with weights frozen at x.
   std::vector<FrameTerm<T>> (*frame)(const T* x, const T* p);
@@ -49,7 +49,7 @@ struct Energy {
 
 // What an energy must define, in plain form, for any scalar S (T itself or dual numbers over it).
 // Optional:
-//   Length(x, p) and Penalty(s, p) with psi = Penalty(Length);
+//   Length(x, p), and Penalty(s, p) if psi = Penalty(Length), not a penalty of other things too;
 //   kFrameDofs; FrameAt(x, at, p), the frame coordinates c of x with their weights frozen at `at`
 //   (T); FrameValue(c, at, p), psi of them, of which the Hessian loses nothing by frozen weights;
 //   RemainderValue(c, at, p), the part of psi that loses something, a minimum over the weights, and
@@ -102,8 +102,10 @@ Energy<T> MakeEnergy() {
   row.derivatives = [](const T* x, const T* p) {
     return Unpack(E::Value(Variables<E::kDofs>(x).data(), p));
   };
-  if constexpr (requires(const T* x) { E::Penalty(E::Length(x, x), x); }) {
+  if constexpr (requires(const T* x) { E::Length(x, x); }) {
     row.length = [](const T* x, const T* p) { return E::Length(x, p); };
+  }
+  if constexpr (requires(const T* x) { E::Penalty(E::Length(x, x), x); }) {
     row.curvature = [](const T* x, const T* p) {
       const Derivatives<T> s = Unpack(E::Length(Variables<E::kDofs>(x).data(), p));
       const auto psi = E::Penalty(Variables<1>(&s.value)[0], p);

@@ -113,10 +113,13 @@ double OtherScales(const Subject& s, const Configuration& c, const std::vector<d
     for (double& v : scaled.x) v *= unit;
     for (std::size_t i = 0; i < scaled.p.size(); ++i) {
       const int power = s.row->energy->parameters[i].length_power;
-      // Parameters of the tests' energies have squares of lengths, which do not go that far.
-      if (power > 1 && (unit < 1e-70 || unit > 1e70)) return worst;
       scaled.p[i] *= std::pow(unit, power);
     }
+    // A length squared or to the power of four does not go as far as a length.
+    const bool representable = std::ranges::equal(c.p, scaled.p, [](double p, double q) {
+      return p == 0 || (std::isnormal(q) && std::isfinite(q));
+    });
+    if (!representable) continue;
     // Rounding the scaled coordinates moves x as an inexact rotation does.
     const bool exact = std::frexp(unit, std::array<int, 1>().data()) == 0.5;
     if (!exact && !c.well_conditioned) continue;
@@ -196,14 +199,16 @@ double OffScalar(const Subject& s, const Configuration& c, const std::vector<dou
 }
 
 // What the distributions leave at its default: two of three configurations get another stiffness
-// and a side of their own, if the energy is defined on it.
+// and a side of their own, if the energy is defined on it; each has one of five thresholds.
 void VaryParameters(const EnergyRow& energy, int i, Configuration& c) {
   const double stiffness[] = {1, 3.5, 0.3}, side[] = {0, 1, -1};
+  const double threshold[] = {1, 0.1, 10, 100, 1e-9};
   const auto* reference = reference::FindEnergy<double>(energy.name);
   std::vector<double>& p = c.p;
   for (std::size_t j = 0; j < p.size(); ++j) {
     const std::string_view name = energy.parameters[j].name;
     if (name == "k" || name == "mu") p[j] = stiffness[i % 3];
+    if (name == "ex") p[j] = threshold[i % 5];
     if (name == "side") {
       p[j] = side[i % 3];
       if (!reference->in_domain(c.x.data(), p.data())) p[j] = 0;
@@ -243,8 +248,8 @@ std::vector<Configuration> DegenerateVertexFaces() {
       VertexFaceCase("height 1e8", ex, {0.5, 1e8, 0}, 0.3, 0.3, 0.05, 0.1, 0),
       VertexFaceCase("deep under a tiny triangle", {1e-6, 0, 0}, {0, 1e-6, 0}, 0.3, 0.3, -1, 0.1,
                      0),
-      VertexFaceCase("equilateral, over the centroid", ex, {0.5, std::sqrt(0.75), 0}, 1. / 3, 1. / 3,
-                     0.05, 0.1, 0),
+      VertexFaceCase("equilateral, over the centroid", ex, {0.5, std::sqrt(0.75), 0}, 1. / 3,
+                     1. / 3, 0.05, 0.1, 0),
       VertexFaceCase("equilateral, deep under the centroid", ex, {0.5, std::sqrt(0.75), 0}, 1. / 3,
                      1. / 3, -1e3, 0.1, 0),
       VertexFaceCase("foot point far outside", ex, ey, 100, -50, 0.05, 0.1, 0),
@@ -256,7 +261,7 @@ std::vector<Configuration> DegenerateVertexFaces() {
 }
 
 // Two edges, the closest points at a and b along them and l between these.
-Configuration EdgeEdgeCase(std::string name, std::vector<double> e0, std::vector<double> e1,
+Configuration CrossingCase(std::string name, std::vector<double> e0, std::vector<double> e1,
                            double a, double b, double l, double eps) {
   const std::vector<double> c = {e0[1] * e1[2] - e0[2] * e1[1], e0[2] * e1[0] - e0[0] * e1[2],
                                  e0[0] * e1[1] - e0[1] * e1[0]};
@@ -272,20 +277,69 @@ Configuration EdgeEdgeCase(std::string name, std::vector<double> e0, std::vector
   return r;
 }
 
-std::vector<Configuration> DegenerateEdgeEdges() {
+std::vector<Configuration> CrossingEdges() {
   const std::vector<double> ex = {1, 0, 0}, ey = {0, 1, 0}, e0 = {0.9, 0.2, -0.4},
                             e1 = {-0.3, 0.8, 0.5};
   return {
-      EdgeEdgeCase("l = 0 exactly", ex, ey, 0.25, 0.5, 0, 0.1),
-      EdgeEdgeCase("l = 1e-12", e0, e1, 0.25, 0.5, 1e-12, 0.1),
-      EdgeEdgeCase("midpoints of equal edges at a right angle", ex, ey, 0.5, 0.5, 0.05, 0.1),
-      EdgeEdgeCase("midpoints, deep", ex, ey, 0.5, 0.5, -1e3, 0.1),
-      EdgeEdgeCase("one edge tiny, deep", ex, {0, 1e-6, 0}, 0.3, 0.4, -1, 0.1),
-      EdgeEdgeCase("angle 1e-4", ex, {1, 1e-4, 0}, 0.3, 0.6, 0.05, 0.1),
-      EdgeEdgeCase("angle 1e-7", ex, {1, 1e-7, 0}, 0.5, 0.5, 0.05, 0.1),
-      EdgeEdgeCase("end of one edge", ex, ey, -0.02, 0.5, 0.05, 0.1),
-      EdgeEdgeCase("ends of both", e0, e1, 1.02, -0.03, 0.05, 0.1),
+      CrossingCase("l = 0 exactly", ex, ey, 0.25, 0.5, 0, 0.1),
+      CrossingCase("l = 1e-12", e0, e1, 0.25, 0.5, 1e-12, 0.1),
+      CrossingCase("midpoints of equal edges at a right angle", ex, ey, 0.5, 0.5, 0.05, 0.1),
+      CrossingCase("midpoints, deep", ex, ey, 0.5, 0.5, -1e3, 0.1),
+      CrossingCase("one edge tiny, deep", ex, {0, 1e-6, 0}, 0.3, 0.4, -1, 0.1),
+      CrossingCase("angle 1e-4", ex, {1, 1e-4, 0}, 0.3, 0.6, 0.05, 0.1),
+      CrossingCase("angle 1e-7", ex, {1, 1e-7, 0}, 0.5, 0.5, 0.05, 0.1),
+      CrossingCase("end of one edge", ex, ey, -0.02, 0.5, 0.05, 0.1),
+      CrossingCase("ends of both", e0, e1, 1.02, -0.03, 0.05, 0.1),
   };
+}
+
+// Two edges e0 and e1, x2 - x0 = e2.
+Configuration ParallelCase(std::string name, std::vector<double> e0, std::vector<double> e1,
+                           std::vector<double> e2, double side, double ex) {
+  Configuration r{std::move(name), {}, {1, 0.1, side, ex}, false, 1};
+  r.x.resize(12);
+  for (std::size_t i = 0; i < 3; ++i) {
+    r.x[3 + i] = e0[i];
+    r.x[6 + i] = e2[i];
+    r.x[9 + i] = e2[i] + e1[i];
+  }
+  return r;
+}
+
+// Edges that are parallel or nearly so, and at the threshold, for energies that have one.
+std::vector<Configuration> ParallelEdges() {
+  const std::vector<double> ex = {1, 0, 0}, ey = {0, 1, 0}, e0 = {0.875, 0.25, -0.375},
+                            half = {0.4375, 0.125, -0.1875}, back = {-1.75, -0.5, 0.75};
+  std::vector<Configuration> cases = {
+      ParallelCase("parallel", ex, ex, {0.25, 0, 0.05}, 1, 1),
+      ParallelCase("parallel, inside each other", ex, ex, {0.25, 0, 0.05}, -1, 1),
+      ParallelCase("parallel, head to tail", ex, ex, {1.03, 0.02, 0.05}, 1, 1),
+      ParallelCase("parallel, askew and shorter", e0, half, {0.25, 0.1, -0.05}, 1, 0.3),
+      ParallelCase("antiparallel, askew and longer", e0, back, {1.1, 0.25, -0.45}, 1, 20),
+      ParallelCase("parallel, nearly touching", ex, ex, {0.25, 0, 1e-6}, 1, 1),
+      ParallelCase("parallel, the threshold tiny", ex, ex, {0.25, 0, 0.05}, 1, 1e-30),
+      ParallelCase("parallel, the threshold huge", ex, ex, {0.25, 0, 0.05}, 1, 1e30),
+      ParallelCase("parallel, one edge 1e-6", {1e-6, 0, 0}, ex, {-0.25, 0, 0.05}, 1, 1),
+      ParallelCase("parallel, the other 1e-6", ex, {-1e-6, 0, 0}, {0.25, 0, 0.05}, 1, 1e-12),
+      ParallelCase("c = ex", ex, ey, {0.25, -0.5, 0.05}, 1, 1),
+      ParallelCase("c below ex by a roundoff", ex, ey, {0.25, -0.5, 0.05}, 1, 1 + 0x1p-52),
+      ParallelCase("c = ex at an end", ex, ey, {0.25, 0.03, 0.05}, 1, 1),
+  };
+  for (const double angle :
+       {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e-10, 1e-11, 1e-12, 1e-14}) {
+    const std::string at = "angle " + std::to_string(std::log10(angle));
+    // Crossing in the middle, where the sine is large enough.
+    if (angle > 1e-8) {
+      cases.push_back(
+          ParallelCase(at + ", crossing", ex, {1, angle, 0}, {0, -angle / 2, 0.05}, 1, 1));
+    }
+    // Nearest at the start of one, clearly: of parallel edges no point is nearer than another.
+    cases.push_back(ParallelCase(at + ", rising", ex, {1, angle, angle}, {0.25, 0, 0.05}, 1, 1));
+    cases.push_back(ParallelCase(at + ", apart", ex, {1, -angle, angle}, {1.03, 0.02, 0.05}, 1, 1));
+    cases.push_back(ParallelCase(at + ", half the threshold", ex, {1, angle, angle},
+                                 {0.25, 0, 0.05}, 1, 4 * angle * angle));
+  }
+  return cases;
 }
 
 }  // namespace
@@ -358,7 +412,10 @@ std::vector<Configuration> Configurations(const EnergyRow& energy) {
   }
   std::vector<Configuration> degenerate;
   if (energy.stencil == "vertex_face") degenerate = DegenerateVertexFaces();
-  if (energy.stencil == "edge_edge") degenerate = DegenerateEdgeEdges();
+  if (energy.stencil == "edge_edge") degenerate = CrossingEdges();
+  if (std::ranges::find(energy.parameters, "ex", &Parameter::name) != energy.parameters.end()) {
+    for (const Configuration& c : ParallelEdges()) degenerate.push_back(c);
+  }
   for (Configuration& c : degenerate) {
     for (std::size_t j = c.p.size(); j < energy.parameters.size(); ++j) {
       c.p.push_back(energy.parameters[j].value);

@@ -11,6 +11,7 @@
 #include "benchmarks/hand_fused.hpp"
 #include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/figures.hpp"
+#include "kernels/energies/collision_mollified.hpp"
 #include "kernels/energies/collision_signed.hpp"
 #include "kernels/energies/strand_bend.hpp"
 #include "reference/oracle.hpp"
@@ -240,6 +241,27 @@ TEST(StrandBend, IsClampedInTheFrameInFloat128) {
 TEST(StrandBend, HasTheReferencesHessianAndCurvatureInFloat128) {
   ExpectDefined<None, StrandBend>("normal");
   ExpectDefined<GaussNewton, StrandBend>("normal");
+}
+
+TEST(MollifiedEdges, HaveTheReferencesHessianInFloat128) {
+  for (const char* d : {"paper", "normal", "active"}) {
+    ExpectDefined<None, CollisionMollified<Quadratic>>(d);
+  }
+}
+TEST(MollifiedEdges, AreClampedInTheFrameInFloat128) {
+  for (const char* d : {"paper", "normal", "active"}) {
+    ExpectDefined<Analytic, CollisionMollified<Quadratic>>(d);
+  }
+}
+
+// No curvature term of their own: it would be zero for parallel edges, where the Hessian is not.
+TEST(MollifiedEdges, OfferNeitherGaussNewtonNorSplit) {
+  using Energy = CollisionMollified<Quadratic>;
+  static_assert(EnergyOver<Energy, double> && !OffersCurvature<Energy, double>);
+  static_assert(!FilterOver<GaussNewton, Energy, double>);
+  static_assert(!FilterOver<GaussNewtonFrame, Energy, double>);
+  static_assert(!FilterOver<Split, Energy, double>);
+  static_assert(FilterOver<Analytic, Energy, Lanes<double, kNativeLanes>>);
 }
 
 TEST(Interface, HoldsAStrandBendingEnergy) {

@@ -1313,6 +1313,7 @@ TEST(Mollified, FrameHessianHasBlocksBetweenInsides) {
       std::copy(pair.x.begin(), pair.x.end(), x.entries.begin());
       const Matrix<Quad> frame = s * x;
       const Vec3<Quad> c0 = Block(&frame[0], 0), c1 = Block(&frame[0], 1);
+      EXPECT_LT(Norm(c0 - pair.Edge().e0), Quad(1e-30));
       const Quad a = Norm(c0), b = Norm(c1);
       const Vec3<Quad> t0 = Quad(1 / a) * c0, t1 = Quad(1 / b) * c1, n = Cross(t0, t1);
       const Quad l = Dot(n, Block(&frame[0], 2)), sign = l < 0 ? -1 : 1;
@@ -1352,13 +1353,46 @@ TEST(Mollified, FrameHessianHasBlocksBetweenInsides) {
   });
 }
 
-TEST(Mollified, FrameIsTheEdgesAtEnds) {
-  ForEdgePairs(1, [](const EdgePair& pair) {
-    if (pair.region == Region::kInside) return;
-    Truth<Quad> truth = TruthOf<Quad, Quad>(kMollified, WithThreshold(pair, 100));
-    const Matrix<Quad> edges =
-        Jacobian(Stack(EdgeEdge::EdgesOf(Variables<12>(pair.x.data()).data())));
-    EXPECT_EQ(FrameMap(truth).entries, edges.entries);
+// At ends: the edge that a point slides along, the other one normal to it, the vector between the
+// points; and three groups of directions that know nothing of each other.
+TEST(Mollified, FrameHessianHasBlocksAtEnds) {
+  ForEdgePairs(3, [](const EdgePair& drawn) {
+    if (drawn.region == Region::kInside) return;
+    const EdgePair pair = WithThreshold(drawn, SquaredCross(drawn.Edge()) / Quad(0.4));
+    Truth<Quad> truth = TruthOf<Quad, Quad>(kMollified, pair);
+    Matrix<Quad> x(12, 1);
+    std::copy(pair.x.begin(), pair.x.end(), x.entries.begin());
+    const Matrix<Quad> frame = FrameMap(truth) * x;
+    const Vec3<Quad> c0 = Block(&frame[0], 0), c1 = Block(&frame[0], 1), c2 = Block(&frame[0], 2);
+    const Edges<Quad> e = pair.Edge();
+    const bool starts_at_b = pair.region == Region::kEndOfA;
+    EXPECT_LT(Norm(c0 - (starts_at_b ? e.e1 : e.e0)), Quad(1e-30));
+    EXPECT_LT(abs(Norm(Cross(c0, c1)) - Norm(Cross(e.e0, e.e1))), Quad(1e-30));
+    EXPECT_LT(abs(Dot(c0, c1)), Quad(1e-30));
+    EXPECT_LT(Norm(c2 - pair.between), Quad(1e-30));
+    EXPECT_TRUE(abs(Dot(c0, c2)) < Quad(1e-30) || pair.region == Region::kEnds);
+
+    const auto unit = [](const Vec3<Quad>& v) { return Quad(1 / Norm(v)) * v; };
+    const Vec3<Quad> t0 = unit(c0), t1 = unit(c1), normal = Cross(t0, t1), n = unit(c2);
+    const Vec3<Quad> across = unit(Cross(c0, n)), along = Cross(across, n);
+    const auto at = [](int slot, const Vec3<Quad>& v) {
+      std::vector<Quad> weights(3, Quad(0));
+      weights.data()[slot] = 1;
+      return Kronecker(weights, v);
+    };
+    const std::vector<Matrix<Quad>> groups[] = {{at(0, t0), at(1, t1), at(2, n)},
+                                                {at(0, t1), at(0, normal), at(1, t0), at(2, along)},
+                                                {at(1, normal)},
+                                                {at(2, across)}};
+    const Matrix<Quad>& hessian = truth.FrameTerms()[0].hessian;
+    const Quad tolerance = Quad(1e-28) * FrobeniusNorm(hessian);
+    for (const auto& group : groups) {
+      for (const auto& other : groups) {
+        if (&group == &other) continue;
+        for (const auto& u : group)
+          for (const auto& v : other) EXPECT_LT(abs((Transpose(u) * (hessian * v))[0]), tolerance);
+      }
+    }
   });
 }
 
@@ -1462,7 +1496,17 @@ TEST(Energies, AreConditionedByTheMarginOfTheirPenalty) {
     expect(name, WithOwnParameters(name, inside), 0.8 * 0.5);
     expect(name, WithOwnParameters(name, at_end), 0.625);
   }
-  expect("collision/edge_edge/mollified/quadratic", inside, 0.8);
+  const auto mollified = [](Configuration<double> c, double threshold) {
+    c.p[3] = threshold;
+    return c;
+  };
+  const std::string name = "collision/edge_edge/mollified/quadratic";
+  expect(name, mollified(inside, 0.5), 0.8);
+  // At an end the angle counts as far as the mollifier does: 0.64 / ex.
+  const auto sharp = UnitEdges({0.25, 0.375, 0.5}, {std::sqrt(0.9999), 0.01, 0}, 1);
+  expect(name, mollified(sharp, 1), 0.625);
+  expect(name, mollified(sharp, 2e-4), 0.625 * 0.01 / 0.5);
+  expect(name, mollified(sharp, 0.9e-4), 0.625);
   const auto anisotropic = WithOwnParameters("/anisotropic/", inside);
   expect("collision/edge_edge/anisotropic/quadratic", anisotropic, 0.8 * 0.5);
   const Configuration<double> edge{{7, 3, 4, 0, 0, 0, 2, 0, 0}, {1, 6, 1}};

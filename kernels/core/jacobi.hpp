@@ -90,4 +90,42 @@ Modes<T, D, K> NearestPsd(const Modes<T, D, K>& modes) {
   return positive;
 }
 
+// The same of modes over four points that no translation changes: those are 9 dimensions with a
+// basis of constants, halves of (1, 1, -1, -1), (1, -1, 1, -1) and (1, -1, -1, 1).
+template <class T, int K>
+Modes<T, 12, 9> NearestPsdOfFour(const Modes<T, 12, K>& modes) {
+  const T half = T(0.5);
+  Vec<T, 9> r[K];
+  for (int m = 0; m < K; ++m) {
+    for (int i = 0; i < 3; ++i) {
+      const T d01 = modes.v[m][i] - modes.v[m][3 + i], d23 = modes.v[m][6 + i] - modes.v[m][9 + i];
+      const T s01 = modes.v[m][i] + modes.v[m][3 + i], s23 = modes.v[m][6 + i] + modes.v[m][9 + i];
+      r[m][i] = half * (s01 - s23);
+      r[m][3 + i] = half * (d01 + d23);
+      r[m][6 + i] = half * (d01 - d23);
+    }
+  }
+  T a[9][9];
+  for (int i = 0; i < 9; ++i) {
+    for (int j = i; j < 9; ++j) {
+      a[i][j] = (modes.lambda[0] * r[0][i]) * r[0][j];
+      for (int m = 1; m < K; ++m) a[i][j] = MulAdd(modes.lambda[m] * r[m][i], r[m][j], a[i][j]);
+    }
+  }
+  const EigenSystem<T, 9> e = JacobiEigen(a);
+  Modes<T, 12, 9> positive;
+  for (int m = 0; m < 9; ++m) {
+    positive.lambda[m] = Select(e.values[m] < T(0.0), T(0.0), e.values[m]);
+    for (int i = 0; i < 3; ++i) {
+      const T z0 = half * e.vectors[i][m], z1 = half * e.vectors[3 + i][m];
+      const T z2 = half * e.vectors[6 + i][m];
+      positive.v[m][i] = z0 + (z1 + z2);
+      positive.v[m][3 + i] = z0 - (z1 + z2);
+      positive.v[m][6 + i] = (z1 - z2) - z0;
+      positive.v[m][9 + i] = (z2 - z1) - z0;
+    }
+  }
+  return positive;
+}
+
 }  // namespace definite

@@ -55,6 +55,16 @@ DEFINITE_INLINE T Dot(const Vec<T, N>& a, const Vec<T, N>& b) {
   return r;
 }
 
+// Select, entry by entry.
+template <class T, int N>
+DEFINITE_INLINE Vec<T, N> SelectAll(const MaskOf<T>& mask, const Vec<T, N>& yes,
+                                    const Vec<T, N>& no) {
+  Vec<T, N> r;
+#pragma GCC unroll 16
+  for (int i = 0; i < N; ++i) r[i] = Select(mask, yes[i], no[i]);
+  return r;
+}
+
 template <class T>
 DEFINITE_INLINE Vec3<T> Cross(const Vec3<T>& a, const Vec3<T>& b) {
   // Products are rounded alike on both sides of each difference, so parallel vectors give exactly

@@ -15,6 +15,7 @@ struct GaussNewton {
   };
 
   template <class E, class T>
+  requires OffersCurvature<E, T>
   static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     return E::template HessianModes<Set::kFrame, Part::kCurvature>(x, p);
   }

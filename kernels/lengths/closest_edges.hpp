@@ -155,10 +155,10 @@ struct ClosestEdges {
     const Vec<T, 4> w = {best.a - T(1.0), -best.a, T(1.0) - best.b, best.b};
 
     f.l = Select(endpoint, s * u, f.l);
-    f.n = Blend(endpoint, n, f.n);
-    f.w = Blend(endpoint, w, f.w);
-    f.t[0] = Blend(endpoint, t0, f.t[0]);
-    f.t[1] = Blend(endpoint, t1, f.t[1]);
+    f.n = SelectAll(endpoint, n, f.n);
+    f.w = SelectAll(endpoint, w, f.w);
+    f.t[0] = SelectAll(endpoint, t0, f.t[0]);
+    f.t[1] = SelectAll(endpoint, t1, f.t[1]);
     f.region = Select(endpoint, Select(is_free, T(kVertexEdge), T(kVertexVertex)), T(kInterior));
     if constexpr (kKind != Clamped::kHybrid) {
       const auto touching_inside = Abs(f.l) <= T(kLeastLength);
@@ -166,7 +166,7 @@ struct ClosestEdges {
       f.l = Select(touching_inside, T(1.0), f.l);
     }
     if constexpr (kKind != Clamped::kFrozen) {
-      f.rows[0] = Blend(endpoint, row, f.rows[0]);
+      f.rows[0] = SelectAll(endpoint, row, f.rows[0]);
       f.inverse_length[0] =
           Select(endpoint, Select(along_a, inverse_a, inverse_b), f.inverse_length[0]);
       f.fixed[1] = endpoint;
@@ -176,15 +176,6 @@ struct ClosestEdges {
         f.fixed[0] = Select(endpoint, Select(is_free, T(0.0), T(1.0)), T(0.0)) > T(0.0);
       }
     }
-  }
-
-  template <class T, int N>
-  static DEFINITE_INLINE Vec<T, N> Blend(const MaskOf<T>& mask, const Vec<T, N>& yes,
-                                         const Vec<T, N>& no) {
-    Vec<T, N> r;
-#pragma GCC unroll 4
-    for (int i = 0; i < N; ++i) r[i] = Select(mask, yes[i], no[i]);
-    return r;
   }
 };
 

@@ -104,6 +104,16 @@ struct UnsignedEdgeEdge {
   static S Distance(const Edges<S>& e, const ClosestPoints<T>& points) {
     return DistanceOf(Involved(e, points), points);
   }
+  // Of the vectors that it is made of.
+  template <class S, class T>
+  static S DistanceOf(const Edges<S>& c, const ClosestPoints<T>& points) {
+    if (points.BothInside()) {
+      const S l = AlongNormal(c);
+      return l < 0 ? -l : l;
+    }
+    if (points.a_inside || points.b_inside) return DistanceToLine(c.e2, c.e0);
+    return Norm(c.e2);
+  }
 
  private:
   // The vectors that the distance is made of: both edges and e2; or the edge that has its closest
@@ -116,15 +126,6 @@ struct UnsignedEdgeEdge {
     if (points.a_inside) return {e.e0, none, e.e2 + points.b * e.e1};
     if (points.b_inside) return {e.e1, none, points.a * e.e0 - e.e2};
     return {none, none, Between(e, points)};
-  }
-  template <class S, class T>
-  static S DistanceOf(const Edges<S>& c, const ClosestPoints<T>& points) {
-    if (points.BothInside()) {
-      const S l = AlongNormal(c);
-      return l < 0 ? -l : l;
-    }
-    if (points.a_inside || points.b_inside) return DistanceToLine(c.e2, c.e0);
-    return Norm(c.e2);
   }
 };
 
