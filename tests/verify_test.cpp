@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <set>
 
-#include "benchmarks/harness/batch.hpp"
-
 namespace definite::verify {
 namespace {
 
@@ -193,18 +191,27 @@ Subject Registered(std::string_view name) {
   return SubjectOf(*rows.at(0)->energy, rows);
 }
 
+Plan PlanFor(const Subject& subject, int threads) {
+  Plan plan;
+  plan.subjects = {subject};
+  for (const Distribution& distribution : AllDistributions()) {
+    plan.distributions.push_back(&distribution);
+  }
+  plan.count = 48;
+  plan.threads = threads;
+  return plan;
+}
+
+Result RunOn(const Plan& plan) {
+  Progress progress(false);
+  return RunChecks(plan, progress);
+}
+
 // What one check finds over drawn configurations.
 CheckResult Over(const Subject& subject, const Check& check) {
-  EnergyResult result = {subject, 0, 0, {{&check, 0, std::nullopt}}};
-  for (const Distribution& distribution : AllDistributions()) {
-    Batch batch(*subject.energy);
-    batch.Draw(distribution, 5, 0, 48);
-    for (int i = 0; i < 48; ++i) {
-      Case at(subject, batch.X(i), batch.P(i));
-      if (at.Active()) Examine(at, &distribution, static_cast<std::uint64_t>(i), result);
-    }
-  }
-  return result.checks.front();
+  Plan plan = PlanFor(subject, 1);
+  plan.checks = std::span(&check, 1);
+  return RunOn(plan).energies.at(0).checks.at(0);
 }
 
 class EveryCheck : public ::testing::TestWithParam<Specimen> {};
@@ -244,23 +251,10 @@ TEST(Verify, ANaNFails) {
   EXPECT_FALSE(Over(exhibit.Of(), AllChecks().front()).Passes());
 }
 
-Plan PlanFor(const Subject& subject, int threads) {
-  Plan plan;
-  plan.subjects = {subject};
-  for (const Distribution& distribution : AllDistributions()) {
-    plan.distributions.push_back(&distribution);
-  }
-  plan.count = 40;
-  plan.threads = threads;
-  return plan;
-}
-
 TEST(Verify, TheResultDoesNotDependOnTheNumberOfThreads) {
   const Subject subject = Registered(kFace);
-  Progress progress(false);
-  const std::string one =
-      ToJson(RunChecks(PlanFor(subject, 1), progress), {}).at("verification").dump();
-  EXPECT_EQ(ToJson(RunChecks(PlanFor(subject, 3), progress), {}).at("verification").dump(), one);
+  const std::string one = ToJson(RunOn(PlanFor(subject, 1)), {}).at("verification").dump();
+  EXPECT_EQ(ToJson(RunOn(PlanFor(subject, 3)), {}).at("verification").dump(), one);
 }
 
 TEST(Verify, AFailureNamesTheConfigurationAndTheCommandThatReplaysIt) {
@@ -268,8 +262,7 @@ TEST(Verify, AFailureNamesTheConfigurationAndTheCommandThatReplaysIt) {
   Exhibit exhibit(sound);
   exhibit.Replace("absolute", StiffRow);
   Plan plan = PlanFor(exhibit.Of(), 1);
-  Progress progress(false);
-  const Result result = RunChecks(plan, progress);
+  const Result result = RunOn(plan);
   const std::string failures = Failures(result);
   EXPECT_NE(failures.find("/absolute/f64: rows_accurate fails"), std::string::npos) << failures;
   const CheckResult& last = result.energies.at(0).checks.end()[-2];
@@ -281,13 +274,12 @@ TEST(Verify, AFailureNamesTheConfigurationAndTheCommandThatReplaysIt) {
   plan.distributions = {last.worst->distribution};
   plan.first = last.worst->index;
   plan.count = 1;
-  EXPECT_NE(Failures(RunChecks(plan, progress)), "");
+  EXPECT_NE(Failures(RunOn(plan)), "");
 }
 
 TEST(Verify, InterruptedItSaysThatItIsPartial) {
   InterruptForTest(true);
-  Progress progress(false);
-  const Result result = RunChecks(PlanFor(Registered(kFace), 2), progress);
+  const Result result = RunOn(PlanFor(Registered(kFace), 2));
   InterruptForTest(false);
   EXPECT_TRUE(result.partial);
   EXPECT_EQ(result.energies.at(0).drawn, 0u);

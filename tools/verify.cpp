@@ -96,7 +96,7 @@ std::string Checks() {
 void AddVerify(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
   options->run.count = "1000";
-  options->run.quick_count = "40";
+  options->run.quick_count = "100";
   CLI::App* command = app.add_subcommand(
       "verify", "Checks the mathematics: derivatives, eigensystems, identities, each row");
   CLI::Option* kernels = AddKernelsOption(*command, options->kernels);

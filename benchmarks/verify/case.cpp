@@ -39,8 +39,13 @@ Case::Case(const Subject& subject, const double* x, const double* p)
       truth_(*subject.reference, x, p),
       conditioning_(subject.reference->conditioning(InQuad(x_).data(), InQuad(p_).data())) {}
 
-bool Case::Is(std::string_view part) const {
-  return ("/" + Energy().name + "/").find("/" + std::string(part) + "/") != std::string::npos;
+bool HasPart(std::string_view name, std::string_view part) {
+  while (!name.empty()) {
+    const std::size_t end = std::min(name.find('/'), name.size());
+    if (name.substr(0, end) == part) return true;
+    name.remove_prefix(std::min(end + 1, name.size()));
+  }
+  return false;
 }
 
 Numbers Case::Classified(const Numbers& x) const {

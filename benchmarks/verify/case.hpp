@@ -29,6 +29,9 @@ struct Subject {
 // Throws std::runtime_error if reference/ does not define the energy or a filter.
 Subject SubjectOf(const EnergyRow& energy, std::vector<const KernelRow*> rows);
 
+// Whether one of the parts of a name between slashes is `part`.
+bool HasPart(std::string_view name, std::string_view part);
+
 // Not thread safe. Quantities are computed when asked for, the dear ones once.
 class Case {
  public:
@@ -36,7 +39,7 @@ class Case {
 
   const Subject& Of() const { return subject_; }
   const EnergyRow& Energy() const { return *subject_.energy; }
-  bool Is(std::string_view part) const;  // the energy's name has it between slashes, or at its ends
+  bool Is(std::string_view part) const { return HasPart(Energy().name, part); }
   const Numbers& X() const { return x_; }
   const Numbers& P() const { return p_; }
 

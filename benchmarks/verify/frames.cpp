@@ -113,9 +113,9 @@ struct ChainRule {
 
 // Signed or unsigned lengths in the paper's frame.
 bool IsPaperLength(const Subject& subject) {
-  const std::string_view name = subject.energy->name;
-  return (name.starts_with("collision/vertex_face/") || name.starts_with("collision/edge_edge/")) &&
-         (name.find("/signed/") != name.npos || name.find("/unsigned/") != name.npos);
+  const std::string& name = subject.energy->name;
+  return (HasPart(name, "vertex_face") || HasPart(name, "edge_edge")) &&
+         (HasPart(name, "signed") || HasPart(name, "unsigned"));
 }
 bool IsInterior(const Case& at) { return at.Region() == 0; }
 
@@ -181,8 +181,7 @@ std::optional<Finding> InertiaError(Case& at) {
 bool HasFrame(const Subject& subject) { return !subject.energy->frame.empty(); }
 bool HasReferenceFrame(const Subject& subject) { return subject.reference->frame != nullptr; }
 bool IsCollision(const Subject& subject) {
-  return subject.energy->name.starts_with("collision/") &&
-         subject.energy->name.find("/mollified/") == std::string::npos;
+  return HasPart(subject.energy->name, "collision") && !HasPart(subject.energy->name, "mollified");
 }
 
 }  // namespace

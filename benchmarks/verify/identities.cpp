@@ -216,8 +216,7 @@ std::optional<Finding> Namesakes(Case& at) {
 }
 
 bool Has(const Subject& subject, std::string_view part) {
-  return ("/" + subject.energy->name + "/").find("/" + std::string(part) + "/") !=
-         std::string::npos;
+  return HasPart(subject.energy->name, part);
 }
 // Of the registry: it may have been built without.
 bool ThereIs(const Subject& subject, std::string_view length) {
@@ -243,8 +242,11 @@ bool IsAnisotropicBesideSigned(const Subject& subject) {
   return IsAnisotropic(subject) && ThereIs(subject, "signed");
 }
 bool HasFrameRows(const Subject& subject) {
-  return subject.Row("numeric_frame") && subject.Row("analytic_frame") &&
-         subject.Row("gauss_newton_frame");
+  for (const char* filter : {"numeric_frame", "analytic_frame", "gauss_newton_frame", "analytic",
+                             "absolute", "gauss_newton"}) {
+    if (!subject.Row(filter)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -252,8 +254,8 @@ bool HasFrameRows(const Subject& subject) {
 std::vector<Check> IdentityChecks() {
   return {
       {"unsigned_is_signed",
-       "psi, gradient and Hessian are the signed length's where the closest points are interior",
-       IsUnsigned, OverAllSides<UnsignedIsSigned>},
+       "psi, gradient, Hessian are the signed length's at interior closest points", IsUnsigned,
+       OverAllSides<UnsignedIsSigned>},
       {"hybrid_is_signed", "likewise for the hybrid, with its analytic and absolute filters",
        IsHybridBesideSigned, OverAllSides<HybridIsSignedInside>},
       {"hybrid_is_frozen", "at an end the hybrid is the frozen length", IsHybridBesideFrozen,
@@ -263,8 +265,8 @@ std::vector<Check> IdentityChecks() {
       {"hybrid_jump", "at an end psi jumps by 4 k eps u with the sign of the length",
        IsQuadraticHybrid, OverAllSides<EnergyJumps>},
       {"frozen_gauss_newton",
-       "outside contact the analytic filter is Gauss-Newton bit for bit, inside it is not",
-       IsFrozen, OverAllSides<FrozenIsGaussNewtonOutside>},
+       "outside contact the analytic filter is Gauss-Newton, bit for bit; inside not", IsFrozen,
+       OverAllSides<FrozenIsGaussNewtonOutside>},
       {"m_1_is_signed", "m = 1 is the signed length, with its analytic and absolute filters",
        IsAnisotropicBesideSigned, OverAllSides<WholeMIsSigned>},
       {"m_drops_out", "psi, gradient and Hessian do not depend on m where l > 0", IsAnisotropic,

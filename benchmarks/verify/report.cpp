@@ -73,7 +73,7 @@ Json ToJson(const Result& result, const std::vector<std::string>& command) {
   for (const Distribution* distribution : result.plan.distributions) {
     verification["distributions"].push_back(distribution->name);
   }
-  for (const Check& check : AllChecks()) {
+  for (const Check& check : result.plan.checks) {
     verification["says"][std::string(check.name)] = check.says;
   }
   verification["energies"] = Json::array();
@@ -104,7 +104,7 @@ std::string ToTable(const Result& result) {
       if (check.worst) {
         table += fmt::format("{:>16.2g}  {} {}", check.worst->finding.violation,
                              check.worst->distribution->name, check.worst->index);
-        if (const KernelRow* row = check.worst->finding.row) table += " " + ShortName(*row);
+        if (const KernelRow* row = check.worst->finding.row) table += fmt::format(" {}", ShortName(*row));
         if (!check.Passes()) table += "  FAILS";
       } else {
         table += fmt::format("{:>16}", "-");

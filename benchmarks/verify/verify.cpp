@@ -40,7 +40,7 @@ std::vector<EnergyResult> EmptyResults(const Plan& plan) {
   std::vector<EnergyResult> results;
   for (const Subject& subject : plan.subjects) {
     EnergyResult result = {subject, 0, 0, {}};
-    for (const Check& check : AllChecks()) {
+    for (const Check& check : plan.checks) {
       if (check.applies(subject)) result.checks.push_back({&check, 0, std::nullopt});
     }
     results.push_back(result);
@@ -57,8 +57,14 @@ void ExamineBlock(const Plan& plan, const Block& block, EnergyResult& result) {
     double where[3];
     subject.energy->classify(batch.X(i), batch.P(i), where, 1);
     if (where[0] != 1) continue;
+    ++result.active;
     Case at(subject, batch.X(i), batch.P(i));
-    Examine(at, block.distribution, block.first + static_cast<std::uint64_t>(i), result);
+    const std::uint64_t index = block.first + static_cast<std::uint64_t>(i);
+    for (CheckResult& check : result.checks) {
+      if (const std::optional<Finding> finding = check.check->find(at)) {
+        check.Merge({check.check, 1, Worst{*finding, block.distribution, index}});
+      }
+    }
   }
 }
 
@@ -75,16 +81,6 @@ void CheckResult::Merge(const CheckResult& other) {
   if (!worst || size(*other.worst) > size(*worst) ||
       (size(*other.worst) == size(*worst) && place(*other.worst) < place(*worst))) {
     worst = other.worst;
-  }
-}
-
-void Examine(Case& at, const Distribution* distribution, std::uint64_t index,
-             EnergyResult& result) {
-  ++result.active;
-  for (CheckResult& check : result.checks) {
-    if (const std::optional<Finding> finding = check.check->find(at)) {
-      check.Merge({check.check, 1, Worst{*finding, distribution, index}});
-    }
   }
 }
 

@@ -16,6 +16,7 @@ namespace definite::verify {
 
 struct Plan {
   std::vector<Subject> subjects;
+  std::span<const Check> checks = AllChecks();
   std::vector<const Distribution*> distributions;  // each where it can draw the energy
   std::uint64_t seed = 42;
   std::uint64_t first = 0, count = 1000;  // configurations of each distribution
@@ -51,9 +52,6 @@ struct Result {
   std::optional<double> load_before;
   bool partial = false;
 };
-
-// Applies what applies to one configuration that is in the domain and active.
-void Examine(Case& at, const Distribution* distribution, std::uint64_t index, EnergyResult& result);
 
 // The same for any number of threads. Stops at the next block when interrupted (progress.hpp); the
 // result then covers what is complete, and says that it is partial.
