@@ -23,6 +23,7 @@ struct Check {
   bool (*applies)(const Subject& subject);
   // Nothing where the check says nothing of the configuration, which is in the domain and active.
   std::optional<Finding> (*find)(Case& at);
+  bool everywhere = false;  // also where the kernel does not act
 };
 
 std::span<const Check> AllChecks();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "benchmarks/verify/check.hpp"
 
@@ -19,6 +20,22 @@ Quad ValueScale(Case& at) {
 Quad GradientScale(Case& at) {
   return FrobeniusNorm(at.Truth().Gradient()) +
          FrobeniusNorm(at.Truth().Hessian()) * NormOf(at.X());
+}
+
+// Whether rounding x cannot move a length across eps or 0, where the energy begins and ends to act.
+bool IsDecided(const Case& at) {
+  if (!HasPart(at.Energy().name, "collision")) return true;
+  const double slack = kRatioBound * kUnit * static_cast<double>(NormOf(at.X()));
+  const double length = at.Length();
+  return std::abs(length) > slack && std::abs(length - at.P()[1]) > slack;
+}
+
+std::optional<Finding> Activity(Case& at) {
+  if (!IsDecided(at)) return std::nullopt;
+  const bool active = at.Active();
+  const bool agrees =
+      active == at.Truth().Active() && (active || (at.Value() == 0 && AllZero(at.Gradient())));
+  return Finding{agrees ? 0 : std::numeric_limits<double>::infinity()};
 }
 
 std::optional<Finding> ValueError(Case& at) {
@@ -152,6 +169,8 @@ std::optional<Finding> ReferenceHessian(Case& at) {
 
 std::vector<Check> DerivativeChecks() {
   return {
+      {"acts", "the kernel acts where the reference does, and is zero elsewhere", AppliesToAll,
+       Activity, true},
       {"value", "the kernel's psi is the reference's", AppliesToAll, ValueError},
       {"gradient", "the kernel's gradient is psi's, by automatic differentiation in float128",
        AppliesToAll, GradientError},

@@ -265,7 +265,7 @@ std::vector<Check> IdentityChecks() {
       {"hybrid_jump", "at an end psi jumps by 4 k eps u with the sign of the length",
        IsQuadraticHybrid, OverAllSides<EnergyJumps>},
       {"frozen_gauss_newton",
-       "outside contact the analytic filter is Gauss-Newton, bit for bit; inside not", IsFrozen,
+       "the analytic filter is Gauss-Newton, bit for bit, outside contact alone", IsFrozen,
        OverAllSides<FrozenIsGaussNewtonOutside>},
       {"m_1_is_signed", "m = 1 is the signed length, with its analytic and absolute filters",
        IsAnisotropicBesideSigned, OverAllSides<WholeMIsSigned>},

@@ -104,7 +104,8 @@ std::string ToTable(const Result& result) {
       if (check.worst) {
         table += fmt::format("{:>16.2g}  {} {}", check.worst->finding.violation,
                              check.worst->distribution->name, check.worst->index);
-        if (const KernelRow* row = check.worst->finding.row) table += fmt::format(" {}", ShortName(*row));
+        if (const KernelRow* row = check.worst->finding.row)
+          table += fmt::format(" {}", ShortName(*row));
         if (!check.Passes()) table += "  FAILS";
       } else {
         table += fmt::format("{:>16}", "-");

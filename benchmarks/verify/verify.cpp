@@ -54,13 +54,12 @@ void ExamineBlock(const Plan& plan, const Block& block, EnergyResult& result) {
   batch.Draw(*block.distribution, plan.seed, block.first, WholeTiles(block.size));
   for (std::int64_t i = 0; i < block.size; ++i) {
     ++result.drawn;
-    double where[3];
-    subject.energy->classify(batch.X(i), batch.P(i), where, 1);
-    if (where[0] != 1) continue;
-    ++result.active;
     Case at(subject, batch.X(i), batch.P(i));
+    const bool active = at.Active();
+    result.active += active;
     const std::uint64_t index = block.first + static_cast<std::uint64_t>(i);
     for (CheckResult& check : result.checks) {
+      if (!active && !check.check->everywhere) continue;
       if (const std::optional<Finding> finding = check.check->find(at)) {
         check.Merge({check.check, 1, Worst{*finding, block.distribution, index}});
       }
