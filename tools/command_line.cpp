@@ -151,7 +151,8 @@ void AddRunOptions(CLI::App& command, RunOptions& options) {
                       fmt::format("Configurations, such as 1000, 10M (default: {})", options.count))
           ->type_name("N");
   command
-      .add_flag("--quick", options.quick, fmt::format("The same as --count {}", options.quick_count))
+      .add_flag("--quick", options.quick,
+                fmt::format("The same as --count {}", options.quick_count))
       ->excludes(count);
   AddSeedOption(command, options.seed);
   command.add_option("--threads", options.threads, "Threads (default: all cores)")
