@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "kernels/core/vec.hpp"
 
@@ -190,6 +191,19 @@ PackedSym<T, D> ToPacked(const Modes<T, D, K>& modes) {
 // [i * W + w]. W is the row's lanes; a scalar row has W = 1.
 using TileFunction = void (*)(const double* x, const double* p, double* out, long tiles);
 
+// A set of modes as plain numbers: `write` gives the weight of each mode and then its vector.
+struct ModeTable {
+  int count = 0, size = 0;  // modes, and numbers of a vector
+  TileFunction write = nullptr;
+};
+
+// One term of an energy's reduced frame: modes in the frame coordinates, and the map to these, row
+// by row.
+struct FrameTable {
+  ModeTable modes;
+  TileFunction map;  // modes.size x dofs numbers
+};
+
 // One for each energy; its functions are scalar (W = 1).
 struct EnergyRow {
   std::string name;    // "collision/vertex_face/signed/quadratic"
@@ -205,6 +219,9 @@ struct EnergyRow {
   TileFunction value;     // 1 number
   TileFunction gradient;  // dofs numbers
   TileFunction classify;  // active, in_domain, region
+  // Mode sets that claim to be eigensystems, for verification; empty where there is none.
+  ModeTable split;                // Set::kSplit in x, the curvature first
+  std::vector<FrameTable> frame;  // FrameTerms
 };
 
 // One for each energy x filter x scalar x output.

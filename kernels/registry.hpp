@@ -76,6 +76,42 @@ void RunFilter(const double* x, const double* p, double* out, long tiles) {
           __attribute__((always_inline)) { ForPacked(F::template Apply<E>(xs, ps), store); });
 }
 
+// The modes that modes_of(x, p) gives, as numbers.
+template <class E, class ModesOf>
+ModeTable MakeModeTable(ModesOf) {
+  using ModesType = decltype(ModesOf()(Vec<double, E::kDofs>(), Vec<double, E::kParams>()));
+  constexpr int kCount = ModesType::kCount, kSize = sizeof(ModesType::v) / kCount / sizeof(double);
+  return {kCount, kSize, [](const double* x, const double* p, double* out, long tiles) {
+            ForTiles<E, ScalarTile, kCount*(1 + kSize)>(
+                x, p, out, tiles, [](const auto& xs, const auto& ps, auto store) {
+                  const ModesType modes = ModesOf()(xs, ps);
+                  for (int m = 0; m < kCount; ++m) {
+                    store(m * (1 + kSize), modes.lambda[m]);
+                    for (int i = 0; i < kSize; ++i) store(m * (1 + kSize) + 1 + i, modes.v[m][i]);
+                  }
+                });
+          }};
+}
+
+template <class E, std::size_t kTerm>
+FrameTable MakeFrameTable() {
+  const auto modes_of = [](const auto& x, const auto& p) {
+    return std::get<kTerm>(E::FrameTerms(x, p)).modes;
+  };
+  return {MakeModeTable<E>(modes_of),
+          [](const double* x, const double* p, double* out, long tiles) {
+            using Term =
+                std::tuple_element_t<kTerm, decltype(E::FrameTerms(Vec<double, E::kDofs>(),
+                                                                   Vec<double, E::kParams>()))>;
+            constexpr int kD = E::kDofs, kNumbers = sizeof(Term::map) / sizeof(double);
+            ForTiles<E, ScalarTile, kNumbers>(
+                x, p, out, tiles, [](const auto& xs, const auto& ps, auto store) {
+                  const Term term = std::get<kTerm>(E::FrameTerms(xs, ps));
+                  for (int k = 0; k < kNumbers; ++k) store(k, term.map[k / kD][k % kD]);
+                });
+          }};
+}
+
 template <class E>
 EnergyRow MakeEnergy() {
   using Stencil = typename E::Stencil;
@@ -108,6 +144,18 @@ EnergyRow MakeEnergy() {
       store(2, c.region);
     });
   };
+  if constexpr (OffersSet<E, double, Set::kSplit>) {
+    row.split = MakeModeTable<E>([](const auto& x, const auto& p) {
+      return E::template HessianModes<Set::kSplit, Part::kAll>(x, p);
+    });
+  }
+  if constexpr (WithFrame<E, double>) {
+    using Terms = decltype(E::FrameTerms(Vec<double, E::kDofs>(), Vec<double, E::kParams>()));
+    [&row]<std::size_t... kTerms>(std::index_sequence<kTerms...>) {
+      row.frame = {MakeFrameTable<E, kTerms>()...};
+    }
+    (std::make_index_sequence<std::tuple_size_v<Terms>>());
+  }
   return row;
 }
 

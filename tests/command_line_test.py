@@ -106,7 +106,7 @@ class OnTerminal:
 
 class Help(unittest.TestCase):
     def test_each_command_has_help_with_examples_within_100_columns(self):
-        for command in ([], ["sweep"], ["replay"], ["list"]):
+        for command in ([], ["sweep"], ["replay"], ["list"], ["verify"]):
             with self.subTest(command=command):
                 done = run(*command, "--help")
                 self.assertEqual(done.returncode, 0)
@@ -240,10 +240,10 @@ class BadInput(unittest.TestCase):
 
     def test_an_unknown_subcommand_is_rejected_with_the_known_ones(self):
         self.assert_rejected(["swep"], "'swep'",
-                             "expected a subcommand: sweep, replay, list, reproduce")
+                             "expected a subcommand: sweep, replay, list, reproduce, verify")
 
     def test_no_subcommand_is_rejected_with_the_known_ones(self):
-        self.assert_rejected([], "expected a subcommand: sweep, replay, list, reproduce")
+        self.assert_rejected([], "expected a subcommand: sweep, replay, list, reproduce, verify")
 
     def test_an_unknown_option_is_rejected(self):
         for command in ("sweep", "list", "replay"):

@@ -182,7 +182,7 @@ void AddSeedOption(CLI::App& command, std::string& seed) {
 }
 
 std::uint64_t RunOptions::Count() const {
-  return quick ? 100'000 : ParseCount("--count", count.value_or(default_count), 1);
+  return ParseCount("--count", quick ? quick_count : count.value_or(default_count), 1);
 }
 
 std::uint64_t RunOptions::Seed() const { return ParseCount("--seed", seed, 0); }
@@ -199,9 +199,11 @@ void AddRunOptions(CLI::App& command, RunOptions& options) {
               "--count", options.count,
               fmt::format("Configurations, such as 1000, 10M (default: {})", options.default_count))
           ->type_name("N");
-  command.add_flag("--quick", options.quick, "The same as --count 1e5")->excludes(count);
+  command
+      .add_flag("--quick", options.quick,
+                fmt::format("The same as --count {}", options.quick_count))
+      ->excludes(count);
   AddSeedOption(command, options.seed);
-  AddSetOption(command, options.overrides);
   command.add_option("--threads", options.threads, "Threads (default: all cores)")->type_name("N");
 }
 

@@ -41,13 +41,13 @@ std::vector<ParameterValue> ParseOverrides(const std::vector<std::string>& words
 
 // What a run over many configurations is told.
 struct RunOptions {
-  std::string default_count = "1e7", seed = "42";
+  std::string default_count = "1e7", quick_count = "1e5", seed = "42";
   std::optional<std::string> count, threads;
   std::vector<std::string> overrides;
   bool quick = false;
 
   // Throw UsageError.
-  std::uint64_t Count() const;  // 10^5 if quick
+  std::uint64_t Count() const;  // quick_count if quick
   std::uint64_t Seed() const;
   int Threads() const;  // all cores if not given
 };
@@ -65,6 +65,7 @@ void AddSweep(CLI::App& app, int& exit_code);
 void AddReplay(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddReproduce(CLI::App& app, int& exit_code);
+void AddVerify(CLI::App& app, int& exit_code);
 
 // The words of the command line, as given.
 const std::vector<std::string>& CommandWords();

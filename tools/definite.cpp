@@ -63,12 +63,14 @@ int Run(int argc, char** argv) {
       "  definite list --long\n"
       "  definite sweep --quick\n"
       "  definite sweep --kernels 'collision/*/analytic/*' --count 1e6 --json result.json\n"
+      "  definite verify --quick\n"
       "\nExit codes: 0 all is well, 1 a promise is broken, 2 bad input, 130 interrupted.");
   int exit_code = kOk;
   AddSweep(app, exit_code);
   AddReplay(app, exit_code);
   AddList(app, exit_code);
   AddReproduce(app, exit_code);
+  AddVerify(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version

@@ -142,6 +142,7 @@ void AddReproduce(CLI::App& app, int& exit_code) {
   command->add_option("plan", *name, plans)->required()->type_name("NAME");
   AddKernelsOption(*command, options->kernels);
   AddRunOptions(*command, options->run);
+  AddSetOption(*command, options->run.overrides);
   AddJsonOption(*command, options->json);
   command->add_option("--markdown", options->markdown, "Write the tables to FILE too")
       ->type_name("FILE");

@@ -79,6 +79,7 @@ void AddSweep(CLI::App& app, int& exit_code) {
   AddKernelsOption(*command, options->kernels);
   AddDistributionOption(*command, options->distribution);
   AddRunOptions(*command, options->run);
+  AddSetOption(*command, options->run.overrides);
   AddJsonOption(*command, options->json);
   command->add_flag("--no-timing", options->no_timing, "Check only");
   command->footer(
