@@ -140,6 +140,7 @@ constexpr std::string_view kFace = "collision/vertex_face/signed/quadratic",
                            kHybrid = "collision/edge_edge/hybrid/quadratic",
                            kFrozen = "collision/edge_edge/unsigned_frozen/quadratic",
                            kMixed = "collision/vertex_face/anisotropic/quadratic",
+                           kMollified = "collision/edge_edge/mollified/quadratic",
                            kStrand = "strand/bend/quadratic";
 
 void TwistValue(Exhibit& e) { e.energy.value = TwistedValue; }
@@ -183,6 +184,7 @@ const Specimen kSpecimens[] = {
     {"m_1_is_signed", kMixed, TwistValue},
     {"m_drops_out", kMixed, [](Exhibit& e) { e.energy.value = ValueOfM; }},
     {"m_half_no_force", kMixed, [](Exhibit& e) { e.energy.gradient = GradientWithADraft; }},
+    {"mollified_is_unsigned", kMollified, [](Exhibit& e) { e.Replace("nearest", StiffRow); }},
     {"frame_rows", kHybrid, [](Exhibit& e) { e.Replace("numeric_frame", StiffRow); }},
     {"rows_accurate", kStrand, [](Exhibit& e) { e.Replace("blend_half", StiffRow); }},
     {"rows_psd", kFace, [](Exhibit& e) { e.Replace("numeric", IndefiniteRow); }},

@@ -38,7 +38,7 @@ struct CollisionMollified {
     return "collision/" + std::string(Stencil::kName) + "/mollified/" + std::string(Penalty::kName);
   }
   static std::string Source() {
-    return "mollifier: Li et al. 2020; " + std::string(Length::kSource) +
+    return "m: Li et al. 2020; " + std::string(Length::kSource) +
            "; psi: " + std::string(Penalty::kSource);
   }
 
