@@ -43,7 +43,9 @@ std::string Percent(const Json& fraction) {
   return fraction.is_null() ? "-" : fmt::format("{:.4g}", 100 * fraction.get<double>());
 }
 
-std::string Paragraph(const std::string& text) { return "\n" + Wrapped(text, 98, ""); }
+std::string Paragraph(const std::string& text) {
+  return fmt::format("\n{}", Wrapped(text, 98, ""));
+}
 
 Json Claim(const std::string& claim, const std::string& theirs, const std::string& ours,
            const std::string& verdict, const std::string& reason) {
