@@ -15,9 +15,9 @@ EigenMatrix<N> MapEigenvaluesOf(const EigenMatrix<N>& h, EigenvalueMap map) {
   Eigen::SelfAdjointEigenSolver<EigenMatrix<N>> solver(h);  // reads the lower triangle
   double shift = 0;
   if (solver.info() != Eigen::Success) {
-    // Eigen 3.4 runs out of iterations on one in 10^7 or so of the 12x12 Hessians: seven of their
-    // eigenvalues are zero, and beside zeros on the diagonal it waits for couplings that rounding
-    // keeps alive. It takes the same matrix with all eigenvalues moved away from zero.
+    // Eigen 3.4 runs out of iterations on one of 5 10^7 12x12 Hessians (`paper`, AVX-512): seven of
+    // their eigenvalues are zero, and beside zeros on the diagonal it waits for couplings that
+    // rounding keeps alive. It takes the same matrix with all eigenvalues moved away from zero.
     shift = h.norm();
     solver.compute(h + shift * EigenMatrix<N>::Identity());
     if (solver.info() != Eigen::Success) {
