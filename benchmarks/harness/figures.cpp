@@ -1,16 +1,16 @@
 #include "benchmarks/harness/figures.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "reference/spectrum.hpp"
 
 namespace definite {
 
 namespace {
 
 constexpr int kMaxRows = 12;
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxRows, kMaxRows>;
 
 // sqrt(sum of squares of the full matrix) of the entries entry(k). Eight partial sums: one would
 // wait for itself.
@@ -86,17 +86,12 @@ bool IsPsd(Packed a) {
 
 std::vector<double> Eigenvalues(Packed a) {
   const int n = PackedRows(a);
-  Matrix full(n, n);
+  reference::Matrix<double> upper(n, n);
   std::size_t k = 0;
   for (int i = 0; i < n; ++i) {
-    for (int j = i; j < n; ++j) full(i, j) = full(j, i) = a[k++];
+    for (int j = i; j < n; ++j) upper(i, j) = a[k++];
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(full, Eigen::EigenvaluesOnly);
-  std::vector<double> values(static_cast<std::size_t>(n), std::numeric_limits<double>::quiet_NaN());
-  if (solver.info() == Eigen::Success) {
-    std::copy_n(solver.eigenvalues().data(), n, values.begin());
-  }
-  return values;
+  return reference::EigenSpectrum(upper).values.entries;
 }
 
 std::vector<double> Difference(Packed a, Packed b) {

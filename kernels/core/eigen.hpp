@@ -12,7 +12,8 @@ namespace definite {
 
 inline double ClampToPsd(double lambda) { return lambda < 0 ? 0 : lambda; }  // NaN stays NaN
 
-// sum map(lambda) v v^T over the eigenpairs of h; NaN where the solver does not converge.
+// sum map(lambda) v v^T over the eigenpairs of h; by Jacobi rotations where Eigen's solver does not
+// converge.
 // N: 6, 9, 12.
 template <int N>
 PackedSym<double, N> MapEigenvalues(const PackedSym<double, N>& h, EigenvalueMap map) {

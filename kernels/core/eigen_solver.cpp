@@ -1,7 +1,8 @@
 #include "kernels/core/eigen_solver.hpp"
 
 #include <Eigen/Dense>
-#include <limits>
+
+#include "kernels/core/jacobi.hpp"
 
 namespace definite {
 
@@ -10,23 +11,34 @@ namespace {
 template <int N>
 using EigenMatrix = Eigen::Matrix<double, N, N>;
 
+// Our own rotations, which always converge. Reads the lower triangle.
+template <int N>
+EigenMatrix<N> MapEigenvaluesByJacobi(const EigenMatrix<N>& h, EigenvalueMap map) {
+  double a[N][N];
+  const double scale =
+      h.template triangularView<Eigen::Lower>().toDenseMatrix().cwiseAbs().maxCoeff();
+  for (int i = 0; i < N; ++i) {
+    for (int j = i; j < N; ++j) a[i][j] = h(j, i) / scale;  // so that no square overflows
+  }
+  const EigenSystem<double, N> e = JacobiEigen(a);
+  EigenMatrix<N> mapped = EigenMatrix<N>::Zero();
+  for (int m = 0; m < N; ++m) {
+    Eigen::Matrix<double, N, 1> v;
+    for (int i = 0; i < N; ++i) v[i] = e.vectors[i][m];
+    mapped += map(scale * e.values[m]) * v * v.transpose();
+  }
+  return mapped;
+}
+
 template <int N>
 EigenMatrix<N> MapEigenvaluesOf(const EigenMatrix<N>& h, EigenvalueMap map) {
-  Eigen::SelfAdjointEigenSolver<EigenMatrix<N>> solver(h);  // reads the lower triangle
-  double shift = 0;
-  if (solver.info() != Eigen::Success) {
-    // Eigen 3.4 runs out of iterations on one of 5 10^7 12x12 Hessians (`paper`, AVX-512): seven of
-    // their eigenvalues are zero, and beside zeros on the diagonal it waits for couplings that
-    // rounding keeps alive. It takes the same matrix with all eigenvalues moved away from zero.
-    shift = h.norm();
-    solver.compute(h + shift * EigenMatrix<N>::Identity());
-    if (solver.info() != Eigen::Success) {
-      return EigenMatrix<N>::Constant(std::numeric_limits<double>::quiet_NaN());
-    }
-  }
+  const Eigen::SelfAdjointEigenSolver<EigenMatrix<N>> solver(h);  // reads the lower triangle
+  // Eigen 3.4 runs out of iterations on a few 12x12 Hessians, three of 2 10^8 here: seven of their
+  // eigenvalues are zero, and beside zeros on the diagonal it waits for couplings that rounding
+  // keeps alive. Which ones they are depends on the instruction set.
+  if (solver.info() != Eigen::Success) return MapEigenvaluesByJacobi(h, map);
   const EigenMatrix<N>& v = solver.eigenvectors();
-  return v * (solver.eigenvalues().array() - shift).unaryExpr(map).matrix().asDiagonal() *
-         v.transpose();
+  return v * solver.eigenvalues().unaryExpr(map).asDiagonal() * v.transpose();
 }
 
 template <int N>

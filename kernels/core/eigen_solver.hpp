@@ -1,6 +1,6 @@
 #pragma once
 
-// What eigen_solver.cpp offers, on plain numbers: it includes nothing else of ours, since Eigen takes half
+// What eigen_solver.cpp offers, on plain numbers: its users include no Eigen, which takes half
 // a minute to compile. eigen.hpp has the form that filters use.
 
 namespace definite {

@@ -29,22 +29,30 @@ DEFINITE_INLINE EigenSystem<T, N> JacobiEigen(T (&a)[N][N]) {
     x = MulAdd(s, y, c * old);
     y = MulAdd(c, y, -(s * old));
   };
+  const auto rotate = [&](int p, int q) {
+    const auto [first, second, c, s] = SymmetricEigen2(a[p][p], a[p][q], a[q][q]);
+    a[p][p] = first;
+    a[q][q] = second;
+    a[p][q] = T(0.0);
+#pragma GCC unroll 4
+    for (int i = 0; i < p; ++i) turn(a[i][p], a[i][q], c, s);
+#pragma GCC unroll 4
+    for (int i = p + 1; i < q; ++i) turn(a[p][i], a[i][q], c, s);
+#pragma GCC unroll 4
+    for (int i = q + 1; i < N; ++i) turn(a[p][i], a[q][i], c, s);
+#pragma GCC unroll 4
+    for (int i = 0; i < N; ++i) turn(e.vectors[i][p], e.vectors[i][q], c, s);
+  };
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-#pragma GCC unroll 16
-    for (int p = 0; p < N - 1; ++p) {
-#pragma GCC unroll 16
-      for (int q = p + 1; q < N; ++q) {
-        const auto [first, second, c, s] = SymmetricEigen2(a[p][p], a[p][q], a[q][q]);
-        a[p][p] = first;
-        a[q][q] = second;
-        a[p][q] = T(0.0);
-#pragma GCC unroll 16
-        for (int i = 0; i < N; ++i) {
-          if (i != p && i != q) {
-            turn(a[i < p ? i : p][i < p ? p : i], a[i < q ? i : q][i < q ? q : i], c, s);
-          }
-          turn(e.vectors[i][p], e.vectors[i][q], c, s);
-        }
+    if constexpr (N <= 5) {
+#pragma GCC unroll 4
+      for (int p = 0; p < N - 1; ++p) {
+#pragma GCC unroll 4
+        for (int q = p + 1; q < N; ++q) rotate(p, q);
+      }
+    } else {
+      for (int p = 0; p < N - 1; ++p) {
+        for (int q = p + 1; q < N; ++q) rotate(p, q);
       }
     }
   }

@@ -75,12 +75,9 @@ DEFINITE_INLINE auto SecularEquation<T, N>::LargestRoots(std::integer_sequence<i
     -> SecularRoots<T, N, sizeof...(m)> {
   constexpr int K = sizeof...(m), kFirst = N - K;
   constexpr int kMostSteps = 40;  // not needed; so that no rounding can make it endless
-  // All roots side by side: K short chains of operations instead of a long one.
+  // All roots side by side: K short chains of operations instead of a long one. Each is one copy of
+  // Step, which is most of what the compiler has to read.
   Bracket b[K] = {Middle<kFirst + m>()...};
-  (Step<kFirst + m>(b[m]), ...);
-  (ChooseOrigin<kFirst + m>(b[m]), ...);
-  (Step<kFirst + m>(b[m]), ...);
-  (Step<kFirst + m>(b[m]), ...);
   for (int step = 0; step < kMostSteps; ++step) {
     const auto unsettled = (IsUnsettled<kFirst + m>(b[m]) | ...);
     if (!Any(unsettled)) break;
@@ -98,12 +95,13 @@ template <class T, int N>
 template <int k>
 DEFINITE_INLINE auto SecularEquation<T, N>::Middle() const -> Bracket {
   if constexpr (k + 1 < N) {
-    return {T(1.0), T(0.5) * (pole[k + 1] - pole[k]), T(0.0)};
+    const T half = T(0.5) * (pole[k + 1] - pole[k]);
+    return {T(1.0), half, half};
   } else {
     T sum = weight[0];
 #pragma GCC unroll 8
     for (int i = 1; i < N; ++i) sum = sum + weight[i];
-    return {T(1.0), sum, T(0.0)};
+    return {T(1.0), sum, sum};
   }
 }
 
