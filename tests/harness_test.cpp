@@ -365,7 +365,9 @@ TEST(TimedPass, TimesEveryRowInEveryRound) {
   SweepPlan plan = Plan(20'000, 2);
   plan.timing = true;
   EnergyResult energy{plan.rows[0]->energy, {}, {}, 0, 0};
-  for (const KernelRow* row : plan.rows) energy.rows.push_back({row, {}, {}, {}});
+  for (const KernelRow* row : plan.rows) {
+    if (row->energy == energy.energy) energy.rows.push_back({row, {}, {}, {}});
+  }
   Progress progress(false);
   RunTimedPass(plan, energy, progress);
   EXPECT_GT(energy.timed_cpu, 0);

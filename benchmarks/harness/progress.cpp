@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <utility>
@@ -10,10 +11,12 @@ namespace definite {
 
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+// Other threads read what a signal writes.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 void OnInterrupt(int signal) {
-  interrupted = 1;
+  interrupted = true;
   std::signal(signal, SIG_DFL);
 }
 
@@ -24,7 +27,7 @@ void CatchInterrupts() {
   std::signal(SIGTERM, OnInterrupt);
 }
 
-bool Interrupted() { return interrupted != 0; }
+bool Interrupted() { return interrupted; }
 void InterruptForTest(bool value) { interrupted = value; }
 
 std::string Duration(double seconds) {
