@@ -157,15 +157,6 @@ double Relabelled(const Subject& s, const Configuration& c, const std::vector<do
   return worst;
 }
 
-double Rounding(const Subject& s, const Configuration& c) {
-  const KernelRow* const rows[] = {s.row};
-  Examiner examiner(*s.row->energy, rows);
-  examiner.Examine(c.x.data(), c.p.data(), Depth::kTruth);
-  if (!examiner.Configuration().active) return 0;
-  const auto rounding = examiner.Row(0).conditioned_rounding;
-  return rounding ? Infinite(*rounding / kRatioBound) : std::numeric_limits<double>::infinity();
-}
-
 double OffScalar(const Subject& s, const Configuration& c, const std::vector<double>& f) {
   if (s.row->lanes == 1) return 0;
   if (!s.scalar) return std::numeric_limits<double>::infinity();
@@ -351,6 +342,20 @@ std::vector<double> Outputs(const KernelRow& row, const std::vector<double>& x,
   return out;
 }
 
+std::vector<double> AccuracyViolations(std::span<const KernelRow* const> rows,
+                                       const Configuration& c) {
+  Examiner examiner(*rows[0]->energy, rows);
+  examiner.Examine(c.x.data(), c.p.data(), Depth::kTruth);
+  std::vector<double> violations(rows.size(), 0);
+  if (!examiner.Configuration().active) return violations;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto rounding = examiner.Row(r).conditioned_rounding;
+    violations[r] =
+        rounding ? Infinite(*rounding / kRatioBound) : std::numeric_limits<double>::infinity();
+  }
+  return violations;
+}
+
 double Violation(Property property, const Subject& s, const Configuration& c) {
   const int n = s.row->energy->dofs;
   const std::vector<double> f = Outputs(*s.row, c.x, c.p), h = Outputs(*s.exact, c.x, c.p);
@@ -363,7 +368,7 @@ double Violation(Property property, const Subject& s, const Configuration& c) {
       return norm == 0 ? 0 : Infinite(-Eigenvalues(f).front() / (bound * norm));
     }
     case Property::kAccurate:
-      return Rounding(s, c);
+      return AccuracyViolations({&s.row, 1}, c)[0];
     case Property::kLanesEqualScalar:
       return OffScalar(s, c, f);
     case Property::kKeepsPsd:

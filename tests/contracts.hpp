@@ -4,6 +4,7 @@
 // configuration. A check gives the size of the violation in units of its bound: above 1 the
 // property does not hold.
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,11 +31,16 @@ struct Subject {
 // in reference/.
 double Violation(Property property, const Subject& subject, const Configuration& configuration);
 
+// The same of kAccurate, for rows of one energy: they share the Hessian in float128 and its
+// spectrum, which take most of the time.
+std::vector<double> AccuracyViolations(std::span<const KernelRow* const> rows,
+                                       const Configuration& configuration);
+
 // Configurations of an energy in its domain: drawn ones of every distribution, and degenerate ones
 // for the families that have some.
 std::vector<Configuration> Configurations(const EnergyRow& energy);
 
 std::vector<double> Outputs(const KernelRow& row, const std::vector<double>& x,
-                        const std::vector<double>& p);
+                            const std::vector<double>& p);
 
 }  // namespace definite::testing
