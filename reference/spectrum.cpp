@@ -12,7 +12,7 @@ Spectrum<double> EigenSpectrum(const Matrix<double>& a) {
   // Eigen reads the lower triangle of its column-major view: our row-major upper one.
   const Eigen::Map<const Eigen::MatrixXd> view(a.entries.data(), n, n);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(view);
-  // Once in 10^8 it does not converge.
+  // A few of 10^8 Hessians do not converge.
   if (solver.info() != Eigen::Success) return JacobiSpectrum(a);
 
   Spectrum<double> spectrum{Matrix<double>(n, 1), Matrix<double>(n, n)};

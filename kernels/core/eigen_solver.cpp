@@ -33,9 +33,9 @@ EigenMatrix<N> MapEigenvaluesByJacobi(const EigenMatrix<N>& h, EigenvalueMap map
 template <int N>
 EigenMatrix<N> MapEigenvaluesOf(const EigenMatrix<N>& h, EigenvalueMap map) {
   const Eigen::SelfAdjointEigenSolver<EigenMatrix<N>> solver(h);  // reads the lower triangle
-  // Eigen 3.4 runs out of iterations on a few 12x12 Hessians, three of 2 10^8 here: seven of their
-  // eigenvalues are zero, and beside zeros on the diagonal it waits for couplings that rounding
-  // keeps alive. Which ones they are depends on the instruction set.
+  // Eigen 3.4 runs out of iterations on a few 12x12 Hessians, three of 1.1 10^8 here: seven of
+  // their eigenvalues are zero, and beside zeros on the diagonal it waits for couplings that
+  // rounding keeps alive. Which ones they are depends on the instruction set.
   if (solver.info() != Eigen::Success) return MapEigenvaluesByJacobi(h, map);
   const EigenMatrix<N>& v = solver.eigenvectors();
   return v * solver.eigenvalues().unaryExpr(map).asDiagonal() * v.transpose();
