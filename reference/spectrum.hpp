@@ -90,7 +90,8 @@ Spectrum<T> JacobiSpectrum(Matrix<T> a) {
   return spectrum;
 }
 
-// The same by Eigen's SelfAdjointEigenSolver where that converges (in spectrum.cpp, which keeps Eigen out of here).
+// The same by Eigen's SelfAdjointEigenSolver where that converges (in spectrum.cpp, which keeps
+// Eigen out of here).
 Spectrum<double> EigenSpectrum(const Matrix<double>& a);
 
 // The solver of choice: Eigen where speed counts, Jacobi where truth does.

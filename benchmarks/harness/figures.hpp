@@ -25,7 +25,7 @@ double RelativeDistance(Packed a, Packed b);
 // Whether lambda_min(a) >= -kRatioBound n u |a|, by the pivots of the shifted matrix.
 bool IsPsd(Packed a);
 
-// All eigenvalues, ascending; NaN where an entry is.
+// All eigenvalues, ascending; NaN if an entry is not finite.
 std::vector<double> Eigenvalues(Packed a);
 
 // a - b.

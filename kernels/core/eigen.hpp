@@ -13,8 +13,7 @@ namespace definite {
 inline double ClampToPsd(double lambda) { return lambda < 0 ? 0 : lambda; }  // NaN stays NaN
 
 // sum map(lambda) v v^T over the eigenpairs of h; by Jacobi rotations where Eigen's solver does not
-// converge.
-// N: 6, 9, 12.
+// converge. N: 6, 9, 12.
 template <int N>
 PackedSym<double, N> MapEigenvalues(const PackedSym<double, N>& h, EigenvalueMap map) {
   PackedSym<double, N> result;

@@ -90,7 +90,8 @@ DEFINITE_INLINE auto SecularEquation<T, N>::LargestRoots(std::integer_sequence<i
   return {{RootOf<kFirst + m>(b[m])...}};
 }
 
-// Behind the last pole: the sum of the weights, which no root exceeds.
+// A start that counts as moved, so that all take a first step. Behind the last pole: the sum of the
+// weights, which no root exceeds.
 template <class T, int N>
 template <int k>
 DEFINITE_INLINE auto SecularEquation<T, N>::Middle() const -> Bracket {
