@@ -308,7 +308,9 @@ INSTANTIATE_TEST_SUITE_P(Registry, EveryCollision, ::testing::ValuesIn(Energies(
 TEST(EdgeEdge, TellsHowManyClosestPointsAreEnds) {
   for (const char* length : {"unsigned", "unsigned_frozen", "hybrid", "mollified"}) {
     const std::string name = "collision/edge_edge/" + std::string(length) + "/quadratic";
-    const EnergyRow& energy = *FindKernel(name + "/none/f64")->energy;
+    const KernelRow* row = FindKernel(name + "/none/f64");
+    if (!row) continue;  // of the energies that were left out
+    const EnergyRow& energy = *row->energy;
     constexpr int kPairs = 256;
     Batch batch(energy);
     batch.Draw(*FindDistribution("normal"), 3, 0, kPairs);

@@ -51,8 +51,8 @@ Quad RelativeError(const PackedSym<Quad, D>& f, const reference::Matrix<Quad>& m
 
 template <class E, class Check>
 void ForDrawn(const std::string& distribution, int count, Check check) {
-  const EnergyRow* energy = FindKernel(E::Name() + "/none/f64")->energy;
-  Batch batch(*energy);
+  static const EnergyRow energy = MakeEnergy<E>();  // be it built into the tables or not
+  Batch batch(energy);
   batch.Draw(*FindDistribution(distribution), 7, 0, count);
   for (int i = 0; i < count; ++i) {
     Vec<Quad, E::kDofs> x;
