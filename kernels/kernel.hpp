@@ -147,6 +147,11 @@ concept OffersCurvature = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kP
   E::template HessianModes<Set::kFrame, Part::kCurvature>(x, p);
 };
 
+// Whether an energy is one of the few that all baselines and outputs are run on: they would give
+// other energies rows that say nothing new. Said where the energy is.
+template <class E>
+inline constexpr bool kStudied = false;
+
 // The same vectors with map(lambda).
 template <class T, int D, int K, class Map>
 DEFINITE_INLINE Modes<T, D, K> MapModes(Modes<T, D, K> modes, Map map) {

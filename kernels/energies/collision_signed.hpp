@@ -12,6 +12,11 @@
 
 namespace definite {
 
+template <class Primitive>
+inline constexpr bool kStudied<Collision<Signed<Primitive>, Quadratic>> = true;
+template <class Primitive>
+inline constexpr bool kStudied<Collision<Signed<Primitive>, LogBarrier>> = true;
+
 DEFINITE_ENERGY(Collision<Signed<VertexFace>, Quadratic>);
 DEFINITE_ENERGY(Collision<Signed<VertexFace>, Cubic>);
 DEFINITE_ENERGY(Collision<Signed<VertexFace>, LogBarrier>);
