@@ -7,13 +7,14 @@
 // The programs see neither: they see two plain tables, AllEnergies() and AllKernels().
 
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
 
-#include "kernels/core/vec.hpp"
+#include "kernels/core/framed_modes.hpp"
 
 namespace definite {
 
@@ -84,6 +85,22 @@ struct Exemption {
   std::string_view why;
 };
 
+// A sum of modes, in either form: as Modes, or as FramedModes where the vectors have its structure.
+template <class R, class T, int D>
+inline constexpr bool kIsModes = false;
+template <class T, int D, int K>
+inline constexpr bool kIsModes<Modes<T, D, K>, T, D> = true;
+template <class T, int D, class Stencil, int K, bool kTurning>
+inline constexpr bool kIsModes<FramedModes<T, Stencil, K, kTurning>, T, D> = 3 *
+                                                                            Stencil::kVertices == D;
+template <class R, class T, int D>
+inline constexpr bool kIsSymmetric = kIsModes<R, T, D>;
+template <class T, int D>
+inline constexpr bool kIsSymmetric<PackedSym<T, D>, T, D> = true;
+template <class T, int D, class Stencil, bool kTurning>
+inline constexpr bool kIsSymmetric<FramedSum<T, Stencil, kTurning>, T, D> = 3 *
+                                                                          Stencil::kVertices == D;
+
 // An energy psi(x; p) of D degrees of freedom. Value is a cancellation-free form, since a line
 // search calls it. Outside the domain, and where inactive, all results are zero.
 template <class E, class T>
@@ -96,19 +113,9 @@ concept EnergyOver = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams
   { E::Gradient(x, p) } -> std::same_as<Vec<T, E::kDofs>>;
   { E::Classify(x, p) } -> std::same_as<Classification<T>>;
   E::template HessianModes<Set::kExact, Part::kAll>(x, p);
-  { E::template HessianModes<Set::kFrame, Part::kAll>(x, p).lambda[0] } -> std::same_as<T&&>;
-  {
-    E::template HessianModes<Set::kFrame, Part::kAll>(x, p).v[0]
-    } -> std::same_as<Vec<T, E::kDofs>&&>;
+  requires kIsModes<decltype(E::template HessianModes<Set::kFrame, Part::kAll>(x, p)), T, E::kDofs>;
   E::template HessianModes<Set::kFrame, Part::kPositive>(x, p);
 };
-
-template <class R, class T, int D>
-inline constexpr bool kIsSymmetric = false;
-template <class T, int D, int K>
-inline constexpr bool kIsSymmetric<Modes<T, D, K>, T, D> = true;
-template <class T, int D>
-inline constexpr bool kIsSymmetric<PackedSym<T, D>, T, D> = true;
 
 // A filter gives a symmetric matrix that stands in for the Hessian of any energy it fits: as modes,
 // if it can, else packed.
@@ -152,11 +159,36 @@ concept OffersCurvature = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kP
 template <class E>
 inline constexpr bool kStudied = false;
 
+// Whether a filter's matrix is also written in other forms than packed (outputs.hpp). A filter says
+// so itself: `static constexpr bool kOutputs = true`.
+template <class F>
+inline constexpr bool kHasOutputs = requires { requires F::kOutputs; };
+
 // The same vectors with map(lambda).
-template <class T, int D, int K, class Map>
-DEFINITE_INLINE Modes<T, D, K> MapModes(Modes<T, D, K> modes, Map map) {
+template <class AnyModes, class Map>
+DEFINITE_INLINE AnyModes MapModes(AnyModes modes, Map map) {
 #pragma GCC unroll 16
-  for (int m = 0; m < K; ++m) modes.lambda[m] = map(modes.lambda[m]);
+  for (int m = 0; m < AnyModes::kCount; ++m) modes.lambda[m] = map(modes.lambda[m]);
+  return modes;
+}
+
+// With the vectors written out.
+template <class T, int D, int K>
+DEFINITE_INLINE const Modes<T, D, K>& Stacked(const Modes<T, D, K>& modes) {
+  return modes;
+}
+template <class T, class Stencil, int K, bool kTurning>
+DEFINITE_INLINE auto Stacked(const FramedModes<T, Stencil, K, kTurning>& framed) {
+  Modes<T, 3 * Stencil::kVertices, K> modes;
+  const auto w = OverVertices<Stencil>(framed.w);
+#pragma GCC unroll 16
+  for (int m = 0; m < K; ++m) {
+    modes.lambda[m] = framed.lambda[m];
+    modes.v[m] = Kron(w, framed.t[m]);
+    if (framed.turns[m]) {
+      modes.v[m] = AddKron(modes.v[m], OverVertices<Stencil>(framed.r[m]), framed.n);
+    }
+  }
   return modes;
 }
 
@@ -190,6 +222,16 @@ PackedSym<T, D> ToPacked(const Modes<T, D, K>& modes) {
   PackedSym<T, D> h;
   ForPacked(modes, [&h](int k, const T& value) { h.a[k] = value; });
   return h;
+}
+template <class T, class Stencil, bool kTurning>
+auto ToPacked(const FramedSum<T, Stencil, kTurning>& sum) {
+  PackedSym<T, 3 * Stencil::kVertices> h;
+  ForPacked(sum, [&h](int k, const T& value) { h.a[k] = value; });
+  return h;
+}
+template <class T, class Stencil, int K, bool kTurning>
+auto ToPacked(const FramedModes<T, Stencil, K, kTurning>& modes) {
+  return ToPacked(SumOf(modes));
 }
 
 // Works on a run of tiles. A tile is W configurations, number by number: entry i of lane w at
@@ -229,6 +271,15 @@ struct EnergyRow {
   std::vector<FrameTable> frame;  // FrameTerms
 };
 
+// Operations on numbers; a fused multiply-add is one. Comparisons, selections, signs and absolute
+// values are none.
+struct Operations {
+  std::int64_t additions = 0, multiplications = 0, fused = 0, divisions = 0, roots = 0, logs = 0;
+  std::int64_t stores = 0;  // numbers written
+
+  std::int64_t Arithmetic() const { return additions + multiplications + fused; }
+};
+
 // One for each energy x filter x scalar x output.
 struct KernelRow {
   std::string name;  // "collision/vertex_face/signed/quadratic/analytic/f64x8"
@@ -238,6 +289,8 @@ struct KernelRow {
   int lanes;
   int outputs;  // numbers written for each configuration
   TileFunction run;
+  // What it does for one configuration, given in scalar layout; null where nobody asks.
+  Operations (*count)(const double* x, const double* p) = nullptr;
 
   bool Promises(Property property) const {
     for (const Exemption& e : exempt) {
@@ -249,6 +302,7 @@ struct KernelRow {
 
 std::span<const EnergyRow> AllEnergies();
 std::span<const KernelRow> AllKernels();
+std::span<const KernelRow> AllOutputs();  // those whose output is not packed
 const KernelRow* FindKernel(std::string_view name);  // by its full name; null if there is none
 
 }  // namespace definite

@@ -8,7 +8,7 @@ namespace {
 
 struct Tables {
   std::vector<EnergyRow> energies;
-  std::vector<KernelRow> kernels;
+  std::vector<KernelRow> kernels, outputs;
 
   Tables() {
     const std::vector<EnergyTable> parts = EnergyTables();
@@ -18,6 +18,10 @@ struct Tables {
       for (KernelRow row : part.kernels) {
         row.energy = &energies.back();
         kernels.push_back(row);
+      }
+      for (KernelRow row : part.outputs) {
+        row.energy = &energies.back();
+        outputs.push_back(row);
       }
     }
   }
@@ -32,11 +36,14 @@ const Tables& AllTables() {
 
 std::span<const EnergyRow> AllEnergies() { return AllTables().energies; }
 std::span<const KernelRow> AllKernels() { return AllTables().kernels; }
+std::span<const KernelRow> AllOutputs() { return AllTables().outputs; }
 
 const KernelRow* FindKernel(std::string_view name) {
-  const auto rows = AllKernels();
-  const auto at = std::ranges::find(rows, name, &KernelRow::name);
-  return at == rows.end() ? nullptr : &*at;
+  for (const auto rows : {AllKernels(), AllOutputs()}) {
+    const auto at = std::ranges::find(rows, name, &KernelRow::name);
+    if (at != rows.end()) return &*at;
+  }
+  return nullptr;
 }
 
 }  // namespace definite

@@ -4,11 +4,14 @@
 // DEFINITE_ENERGY(...) and DEFINITE_FILTER(...) of energies/ and filters/ and writes one source
 // file for each energy, so that a new energy or filter is one file and nothing else.
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "kernels/core/counting.hpp"
 #include "kernels/kernel.hpp"
+#include "kernels/outputs.hpp"
 
 // The lines that CMake reads. An energy is held against its concept where its rows are made, in a
 // file of its own: here it would be compiled for every energy anew.
@@ -21,7 +24,7 @@ namespace definite {
 // One energy's part of the tables.
 struct EnergyTable {
   EnergyRow energy;
-  std::vector<KernelRow> kernels;  // their energy is set where the tables are joined
+  std::vector<KernelRow> kernels, outputs;  // their energy is set where the tables are joined
 };
 
 // One for each energy; CMake writes it.
@@ -44,50 +47,125 @@ struct LanesTile {
   static DEFINITE_INLINE void Store(const Value& value, double* to) { value.Store(to); }
 };
 
-// Runs `compute(x, p, store)` over the tiles; store(i, value) writes number i of `kOutputs`.
-template <class E, class Tile, int kOutputs, class Compute>
+// The numbers of one configuration, or of those that lie side by side, in a tile.
+template <class Layout>
+struct OutputTile {
+  double* first;
+
+  DEFINITE_INLINE void Store(int i, const typename Layout::Value& value) const {
+    Layout::Store(value, first + i * Layout::kLanes);
+  }
+  DEFINITE_INLINE typename Layout::Value Load(int i) const {
+    return Layout::Load(first + i * Layout::kLanes);
+  }
+};
+
+// The configurations of one pass over a tile.
+template <class E, class Layout>
+struct Pass {
+  Vec<typename Layout::Value, E::kDofs> x;
+  Vec<typename Layout::Value, E::kParams> p;
+
+  DEFINITE_INLINE Pass(const double* all_x, const double* all_p, long pass) {
+    constexpr int kW = Layout::kLanes, kPasses = kW / Layout::kPass;
+    const long tile = pass / kPasses, lane = pass % kPasses * Layout::kPass;
+#pragma GCC unroll 16
+    for (int i = 0; i < E::kDofs; ++i) x[i] = Layout::Load(all_x + (tile * E::kDofs + i) * kW + lane);
+#pragma GCC unroll 16
+    for (int i = 0; i < E::kParams; ++i) {
+      p[i] = Layout::Load(all_p + (tile * E::kParams + i) * kW + lane);
+    }
+  }
+
+  // Where its numbers go; tiles are kStride numbers apart.
+  template <int kStride>
+  static DEFINITE_INLINE OutputTile<Layout> TileOf(double* out, long pass) {
+    constexpr int kW = Layout::kLanes, kPasses = kW / Layout::kPass;
+    return {out + pass / kPasses * kStride * kW + pass % kPasses * Layout::kPass};
+  }
+};
+
+// Runs `compute(x, p, tile)` over the tiles, each `kStride` numbers after the one before it.
+template <class E, class Tile, int kStride, class Compute>
 DEFINITE_INLINE void ForTiles(const double* x, const double* p, double* out, long tiles,
                               Compute compute) {
-  using T = typename Tile::Value;
-  constexpr int kW = Tile::kLanes;
-  for (long t = 0; t < tiles; ++t) {
-    for (int w = 0; w < kW; w += Tile::kPass) {
-      Vec<T, E::kDofs> xs;
-      Vec<T, E::kParams> ps;
-#pragma GCC unroll 16
-      for (int i = 0; i < E::kDofs; ++i) xs[i] = Tile::Load(x + (t * E::kDofs + i) * kW + w);
-#pragma GCC unroll 16
-      for (int i = 0; i < E::kParams; ++i) ps[i] = Tile::Load(p + (t * E::kParams + i) * kW + w);
-      double* tile = out + t * kOutputs * kW + w;
-      compute(
-          xs, ps, [tile](int i, const T& value) __attribute__((always_inline)) {
-            Tile::Store(value, tile + i * kW);
-          });
-    }
+  for (long pass = 0; pass < tiles * (Tile::kLanes / Tile::kPass); ++pass) {
+    const Pass<E, Tile> in(x, p, pass);
+    compute(in.x, in.p, Pass<E, Tile>::template TileOf<kStride>(out, pass));
   }
 }
 
-template <class E, class F, class Tile>
+// The output of one pass: of the filter's result, or of the inputs themselves.
+template <class E, class F, class Output, class T, class Tile>
+DEFINITE_INLINE void WriteOutput(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p,
+                                 const Tile& tile) {
+  if constexpr (requires { Output::template WriteOf<F>(x, p, tile); }) {
+    Output::template WriteOf<F>(x, p, tile);
+  } else {
+    Output::Write(F::template Apply<E>(x, p), tile);
+  }
+}
+
+template <class E, class F, class Tile, class Output>
 void RunFilter(const double* x, const double* p, double* out, long tiles) {
-  constexpr int kSize = PackedSym<typename Tile::Value, E::kDofs>::kSize;
-  ForTiles<E, Tile, kSize>(
-      x, p, out, tiles,
-      [](const auto& xs, const auto& ps, auto store)
-          __attribute__((always_inline)) { ForPacked(F::template Apply<E>(xs, ps), store); });
+  using T = typename Tile::Value;
+  using P = Pass<E, Tile>;
+  if constexpr (Tile::kLanes > 1 && requires(const P& in) { F::template Begin<E>(in.x, in.p); }) {
+    // In stages: some passes side by side hide each other's latencies.
+    constexpr int kSideBySide = 4;
+    using State = decltype(F::template Begin<E>(Vec<T, E::kDofs>(), Vec<T, E::kParams>()));
+    State state[kSideBySide];
+    const long passes = tiles * (Tile::kLanes / Tile::kPass);
+    for (long first = 0; first < passes; first += kSideBySide) {
+      const int count = static_cast<int>(std::min<long>(kSideBySide, passes - first));
+      for (int i = 0; i < count; ++i) {
+        const P in(x, p, first + i);
+        state[i] = F::template Begin<E>(in.x, in.p);
+      }
+      for (int step = 0; step < State::kRefinements; ++step) {
+        for (int i = 0; i < count; ++i) state[i].Refine(step);
+      }
+      for (int i = 0; i < count; ++i) {
+        Output::Write(state[i].Result(), P::template TileOf<Output::kStride>(out, first + i));
+      }
+    }
+  } else {
+    ForTiles<E, Tile, Output::kStride>(
+        x, p, out, tiles,
+        [](const auto& xs, const auto& ps, const auto& tile)
+            __attribute__((always_inline)) { WriteOutput<E, F, Output>(xs, ps, tile); });
+  }
+}
+
+// What one configuration costs.
+template <class E, class F, class Output>
+Operations CountOperations(const double* x, const double* p) {
+  struct Nowhere {
+    void Store(int, const Counting&) const { ++Counting::done.stores; }
+    Counting Load(int) const { return Counting(0.0); }
+  };
+  Vec<Counting, E::kDofs> xs;
+  Vec<Counting, E::kParams> ps;
+  for (int i = 0; i < E::kDofs; ++i) xs[i] = Counting(x[i]);
+  for (int i = 0; i < E::kParams; ++i) ps[i] = Counting(p[i]);
+  Counting::done = {};
+  WriteOutput<E, F, Output>(xs, ps, Nowhere());
+  return Counting::done;
 }
 
 // The modes that modes_of(x, p) gives, as numbers.
 template <class E, class ModesOf>
 ModeTable MakeModeTable(ModesOf) {
-  using ModesType = decltype(ModesOf()(Vec<double, E::kDofs>(), Vec<double, E::kParams>()));
+  using ModesType =
+      std::remove_cvref_t<decltype(Stacked(ModesOf()(Vec<double, E::kDofs>(), Vec<double, E::kParams>())))>;
   constexpr int kCount = ModesType::kCount, kSize = sizeof(ModesType::v) / kCount / sizeof(double);
   return {kCount, kSize, [](const double* x, const double* p, double* out, long tiles) {
             ForTiles<E, ScalarTile, kCount*(1 + kSize)>(
-                x, p, out, tiles, [](const auto& xs, const auto& ps, auto store) {
-                  const ModesType modes = ModesOf()(xs, ps);
+                x, p, out, tiles, [](const auto& xs, const auto& ps, const auto& tile) {
+                  const ModesType modes = Stacked(ModesOf()(xs, ps));
                   for (int m = 0; m < kCount; ++m) {
-                    store(m * (1 + kSize), modes.lambda[m]);
-                    for (int i = 0; i < kSize; ++i) store(m * (1 + kSize) + 1 + i, modes.v[m][i]);
+                    tile.Store(m * (1 + kSize), modes.lambda[m]);
+                    for (int i = 0; i < kSize; ++i) tile.Store(m * (1 + kSize) + 1 + i, modes.v[m][i]);
                   }
                 });
           }};
@@ -105,9 +183,9 @@ FrameTable MakeFrameTable() {
                                                                    Vec<double, E::kParams>()))>;
             constexpr int kD = E::kDofs, kNumbers = sizeof(Term::map) / sizeof(double);
             ForTiles<E, ScalarTile, kNumbers>(
-                x, p, out, tiles, [](const auto& xs, const auto& ps, auto store) {
+                x, p, out, tiles, [](const auto& xs, const auto& ps, const auto& tile) {
                   const Term term = std::get<kTerm>(E::FrameTerms(xs, ps));
-                  for (int k = 0; k < kNumbers; ++k) store(k, term.map[k / kD][k % kD]);
+                  for (int k = 0; k < kNumbers; ++k) tile.Store(k, term.map[k / kD][k % kD]);
                 });
           }};
 }
@@ -125,23 +203,23 @@ EnergyRow MakeEnergy() {
   if constexpr (requires { E::kMirror; }) row.mirror = E::kMirror;
   row.dimension = Stencil::kDimension;
   row.value = [](const double* x, const double* p, double* out, long tiles) {
-    ForTiles<E, ScalarTile, 1>(x, p, out, tiles, [](const auto& xs, const auto& ps, auto store) {
-      store(0, E::Value(xs, ps));
+    ForTiles<E, ScalarTile, 1>(x, p, out, tiles, [](const auto& xs, const auto& ps, const auto& tile) {
+      tile.Store(0, E::Value(xs, ps));
     });
   };
   row.gradient = [](const double* x, const double* p, double* out, long tiles) {
     ForTiles<E, ScalarTile, E::kDofs>(x, p, out, tiles,
-                                      [](const auto& xs, const auto& ps, auto store) {
+                                      [](const auto& xs, const auto& ps, const auto& tile) {
                                         const Vec<double, E::kDofs> g = E::Gradient(xs, ps);
-                                        for (int i = 0; i < E::kDofs; ++i) store(i, g[i]);
+                                        for (int i = 0; i < E::kDofs; ++i) tile.Store(i, g[i]);
                                       });
   };
   row.classify = [](const double* x, const double* p, double* out, long tiles) {
-    ForTiles<E, ScalarTile, 3>(x, p, out, tiles, [](const auto& xs, const auto& ps, auto store) {
+    ForTiles<E, ScalarTile, 3>(x, p, out, tiles, [](const auto& xs, const auto& ps, const auto& tile) {
       const Classification<double> c = E::Classify(xs, ps);
-      store(0, c.active);
-      store(1, c.in_domain);
-      store(2, c.region);
+      tile.Store(0, c.active);
+      tile.Store(1, c.in_domain);
+      tile.Store(2, c.region);
     });
   };
   if constexpr (OffersSet<E, double, Set::kSplit>) {
@@ -159,23 +237,53 @@ EnergyRow MakeEnergy() {
   return row;
 }
 
+template <class E, class F, class Tile, class Output>
+KernelRow MakeKernel() {
+  KernelRow row;
+  row.name = E::Name();
+  // What is not packed has its name at the end.
+  for (std::string_view part : {F::kName, Tile::kScalar, Output::kName}) {
+    if (part != PackedOutput<E>::kName) row.name.append(1, '/').append(part);
+  }
+  row.energy = nullptr;
+  row.filter = F::kName;
+  row.source = F::kSource;
+  row.scalar = Tile::kScalar;
+  row.output = Output::kName;
+  row.exempt = F::kExempt;
+  row.lanes = Tile::kLanes;
+  row.outputs = Output::kNumbers;
+  row.run = RunFilter<E, F, Tile, Output>;
+  if constexpr (kStudied<E> && Tile::kLanes > 1) row.count = CountOperations<E, F, Output>;
+  return row;
+}
+
+template <class E, class F, class Tile, class Output>
+void AppendOutput(std::vector<KernelRow>& rows) {
+  using T = typename Tile::Value;
+  using H = decltype(F::template Apply<E>(Vec<T, E::kDofs>(), Vec<T, E::kParams>()));
+  if constexpr (requires(Vec<T, E::kDofs> x, Vec<T, E::kParams> p, OutputTile<Tile> tile) {
+                  Output::template WriteOf<F>(x, p, tile);
+                } || requires(const H& h, OutputTile<Tile> tile) { Output::Write(h, tile); }) {
+    rows.push_back(MakeKernel<E, F, Tile, Output>());
+  }
+}
+
 template <class E, class F, class Tile>
-void AppendKernel(std::vector<KernelRow>& rows) {
+void AppendKernel(EnergyTable& table) {
   // A filter that does not fit the energy or the scalar has no row; the catalogue test would
   // notice one that vanished.
   if constexpr (FilterOver<F, E, typename Tile::Value>) {
-    KernelRow row;
-    row.name = E::Name() + "/" + std::string(F::kName) + "/" + std::string(Tile::kScalar);
-    row.energy = nullptr;
-    row.filter = F::kName;
-    row.source = F::kSource;
-    row.scalar = Tile::kScalar;
-    row.output = "packed";
-    row.exempt = F::kExempt;
-    row.lanes = Tile::kLanes;
-    row.outputs = PackedSym<typename Tile::Value, E::kDofs>::kSize;
-    row.run = RunFilter<E, F, Tile>;
-    rows.push_back(row);
+    table.kernels.push_back(MakeKernel<E, F, Tile, PackedOutput<E>>());
+    // The outputs of the filter's fastest scalar.
+    if constexpr (kStudied<E> && kHasOutputs<F> &&
+                  (Tile::kLanes > 1 || !FilterOver<F, E, LanesTile::Value>)) {
+      AppendOutput<E, F, Tile, DenseOutput<E>>(table.outputs);
+      AppendOutput<E, F, Tile, AppliedOutput<E>>(table.outputs);
+      AppendOutput<E, F, Tile, BlockSumOutput<E>>(table.outputs);
+      AppendOutput<E, F, Tile, FrameOutput<E>>(table.outputs);
+      AppendOutput<E, F, Tile, FramedOutput<E>>(table.outputs);
+    }
   }
 }
 
@@ -187,9 +295,9 @@ template <class E, class... F>
 EnergyTable MakeTable(Filters<F...>) {
   static_assert(EnergyOver<E, double>);
   static_assert(EnergyOver<E, Lanes<double, kNativeLanes>>);
-  EnergyTable table{MakeEnergy<E>(), {}};
-  (AppendKernel<E, F, ScalarTile>(table.kernels), ...);
-  (AppendKernel<E, F, LanesTile>(table.kernels), ...);
+  EnergyTable table{MakeEnergy<E>(), {}, {}};
+  (AppendKernel<E, F, ScalarTile>(table), ...);
+  (AppendKernel<E, F, LanesTile>(table), ...);
   return table;
 }
 

@@ -113,29 +113,30 @@ std::vector<ParameterValue> ParseOverrides(const std::vector<std::string>& words
   return overrides;
 }
 
-std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs) {
-  std::vector<const KernelRow*> rows;
+std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs, Outputs outputs) {
+  std::vector<const KernelRow*> all;
+  for (const KernelRow& row : AllKernels()) all.push_back(&row);
+  if (outputs == Outputs::kAll) {
+    for (const KernelRow& row : AllOutputs()) all.push_back(&row);
+  }
+  const auto matches = [](const std::string& glob, const KernelRow* row) {
+    return fnmatch(glob.c_str(), row->name.c_str(), 0) == 0;
+  };
   for (const std::string& glob : globs) {
-    const auto matches = [&](const KernelRow& row) {
-      return fnmatch(glob.c_str(), row.name.c_str(), 0) == 0;
-    };
-    if (std::ranges::none_of(AllKernels(), matches)) {
+    if (std::ranges::none_of(all, [&](const KernelRow* row) { return matches(glob, row); })) {
       throw UsageError(
           fmt::format("--kernels '{}': no such row; the nearest are:{}", glob, NearNames(glob)));
     }
   }
-  for (const KernelRow& row : AllKernels()) {
-    if (std::ranges::any_of(globs, [&](const std::string& glob) {
-          return fnmatch(glob.c_str(), row.name.c_str(), 0) == 0;
-        })) {
-      rows.push_back(&row);
-    }
-  }
-  return rows;
+  std::erase_if(all, [&](const KernelRow* row) {
+    return std::ranges::none_of(globs, [&](const std::string& glob) { return matches(glob, row); });
+  });
+  return all;
 }
 
 const KernelRow& RowNamed(const std::string& name) {
-  if (const KernelRow* row = FindKernel(name)) return *row;
+  const KernelRow* row = FindKernel(name);
+  if (row && row->output == "packed") return *row;
   throw UsageError(
       fmt::format("--kernel '{}': no such row; the nearest are:{}", name, NearNames(name)));
 }

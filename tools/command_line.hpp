@@ -29,9 +29,11 @@ std::uint64_t ParseCount(const std::string& option, const std::string& text, std
 
 // The rows whose names match a glob, in which * crosses /. Throws UsageError with near names if
 // there is none.
-std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs);
+enum class Outputs { kPacked, kAll };
+std::vector<const KernelRow*> RowsMatching(const std::vector<std::string>& globs,
+                                           Outputs outputs = Outputs::kPacked);
 
-const KernelRow& RowNamed(const std::string& name);
+const KernelRow& RowNamed(const std::string& name);  // packed
 const Distribution& DistributionNamed(const std::string& name);
 
 // Parameters set by words such as "side=-1". Throws UsageError if a word is not like this, or names
@@ -62,6 +64,7 @@ void AddSetOption(CLI::App& command, std::vector<std::string>& overrides);
 
 // Registers a subcommand with its options; `exit_code` gets what it returns. One for each file.
 void AddSweep(CLI::App& app, int& exit_code);
+void AddSpeed(CLI::App& app, int& exit_code);
 void AddReplay(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddReproduce(CLI::App& app, int& exit_code);

@@ -67,6 +67,7 @@ int Run(int argc, char** argv) {
       "\nExit codes: 0 all is well, 1 a promise is broken, 2 bad input, 130 interrupted.");
   int exit_code = kOk;
   AddSweep(app, exit_code);
+  AddSpeed(app, exit_code);
   AddReplay(app, exit_code);
   AddList(app, exit_code);
   AddReproduce(app, exit_code);

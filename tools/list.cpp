@@ -30,7 +30,7 @@ void AddList(CLI::App& app, int&) {
       fmt::print("{}", PromiseTable());
       return;
     }
-    for (const KernelRow* row : RowsMatching(options->kernels)) {
+    for (const KernelRow* row : RowsMatching(options->kernels, Outputs::kAll)) {
       fmt::print("{}\n", row->name);
       if (!options->long_form) continue;
       fmt::print("  energy  {}\n  filter  {}\n", row->energy->source, row->source);

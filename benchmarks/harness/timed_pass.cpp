@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <ctime>
 #include <numeric>
 
 #include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/clock.hpp"
 
 namespace definite {
 
@@ -18,16 +17,6 @@ constexpr std::int64_t kBlock = 4096;  // at most drawn before the clock starts:
 constexpr int kMaxRounds = 15;
 
 constexpr std::int64_t CeilDivide(std::int64_t a, std::int64_t b) { return (a + b - 1) / b; }
-
-double ThreadSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double WallSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Seconds that a row takes over the batch, its outputs going round in the ring.
 double TimeOf(const KernelRow& row, const Batch& batch, double* ring, double (*clock)()) {
@@ -74,19 +63,18 @@ class Parts {
   std::vector<std::int64_t> indices_[2];
 };
 
-// The rows in a random order that depends on the block alone.
-std::vector<std::size_t> Shuffled(std::size_t count, std::uint64_t seed, std::uint64_t block) {
+}  // namespace
+
+std::vector<std::size_t> ShuffledOrder(std::size_t count, std::uint64_t seed, std::uint64_t round) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), 0);
-  Draws draws(StreamId("order of rows"), seed, block);
+  Draws draws(StreamId("order of rows"), seed, round);
   for (std::size_t i = count; i > 1; --i) {
     std::swap(order[i - 1],
               order[static_cast<std::size_t>(draws.Uniform() * static_cast<double>(i))]);
   }
   return order;
 }
-
-}  // namespace
 
 int TimedRounds(std::uint64_t count) {
   return static_cast<int>(std::clamp<std::uint64_t>(count / 512, 1, kMaxRounds));
@@ -141,7 +129,7 @@ void RunTimedPass(const SweepPlan& plan, EnergyResult& result, Progress& progres
         mine.wall -= WallSeconds();
         block_of_all.Draw(*plan.distribution, plan.seed, begin, WholeTiles(size));
         parts.Split(block_of_all, size);
-        for (std::size_t r : Shuffled(rows.size(), plan.seed, begin)) {
+        for (std::size_t r : ShuffledOrder(rows.size(), plan.seed, begin)) {
           for (std::size_t part : {Parts::kActive, Parts::kIdle}) {
             mine.seconds[r][part] += parts.TimeOf(part, *rows[r].row, ring.Data(), clock);
           }

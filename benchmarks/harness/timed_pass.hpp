@@ -10,6 +10,9 @@ inline constexpr int kRing = 16;  // configurations in the output ring, which st
 
 int TimedRounds(std::uint64_t count);
 
+// 0 to count - 1 in a random order that depends on seed and round alone: who is timed when.
+std::vector<std::size_t> ShuffledOrder(std::size_t count, std::uint64_t seed, std::uint64_t round);
+
 // Times the rows of one energy, all interleaved in random order over the same configurations, and
 // appends a time for each round to each row. An interrupted round is dropped.
 void RunTimedPass(const SweepPlan& plan, EnergyResult& result, Progress& progress);

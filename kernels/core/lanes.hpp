@@ -63,6 +63,15 @@ struct Lanes {
     return r;
   }
   DEFINITE_INLINE void Store(S* to) const { __builtin_memcpy(to, &lane, sizeof(lane)); }
+  // Past the caches; `to` is aligned like a vector.
+  DEFINITE_INLINE void Stream(S* to) const {
+#if defined(__AVX512F__)
+    if constexpr (sizeof(lane) == 64) return _mm512_stream_pd(to, lane);
+#elif defined(__AVX__)
+    if constexpr (sizeof(lane) == 32) return _mm256_stream_pd(to, lane);
+#endif
+    Store(to);
+  }
 };
 
 namespace internal {
@@ -130,6 +139,12 @@ DEFINITE_INLINE Lanes<S, W> MulAdd(const Lanes<S, W>& a, const Lanes<S, W>& b,
   if constexpr (std::is_same_v<S, double> && W == 4) {
     return internal::Wrap<Lanes<S, W>>(_mm256_fmadd_pd(a.lane, b.lane, c.lane));
   }
+  if constexpr (std::is_same_v<S, float> && W == 8) {
+    return internal::Wrap<Lanes<S, W>>(_mm256_fmadd_ps(a.lane, b.lane, c.lane));
+  }
+  if constexpr (std::is_same_v<S, float> && W == 4) {
+    return internal::Wrap<Lanes<S, W>>(_mm_fmadd_ps(a.lane, b.lane, c.lane));
+  }
 #endif
   Lanes<S, W> r;
   for (int i = 0; i < W; ++i) r.lane[i] = std::fma(a.lane[i], b.lane[i], c.lane[i]);
@@ -147,6 +162,12 @@ DEFINITE_INLINE Lanes<S, W> Sqrt(const Lanes<S, W>& a) {
 #if defined(__AVX__)
   if constexpr (std::is_same_v<S, double> && W == 4) {
     return internal::Wrap<Lanes<S, W>>(_mm256_sqrt_pd(a.lane));
+  }
+  if constexpr (std::is_same_v<S, float> && W == 8) {
+    return internal::Wrap<Lanes<S, W>>(_mm256_sqrt_ps(a.lane));
+  }
+  if constexpr (std::is_same_v<S, float> && W == 4) {
+    return internal::Wrap<Lanes<S, W>>(_mm_sqrt_ps(a.lane));
   }
 #endif
   Lanes<S, W> r;

@@ -21,17 +21,31 @@ DEFINITE_INLINE bool Any(bool condition) { return condition; }
 
 // a b + c, rounded once where the type has a fused multiply-add.
 DEFINITE_INLINE double MulAdd(double a, double b, double c) { return std::fma(a, b, c); }
+DEFINITE_INLINE float MulAdd(float a, float b, float c) { return std::fma(a, b, c); }
 template <class T>
 DEFINITE_INLINE T MulAdd(const T& a, const T& b, const T& c) {
   return a * b + c;
 }
 
 DEFINITE_INLINE double Sqrt(double a) { return std::sqrt(a); }
+DEFINITE_INLINE float Sqrt(float a) { return std::sqrt(a); }
 template <class T>
 T Sqrt(const T& a) {
   using std::sqrt;
   return sqrt(a);
 }
+
+// The root of a small whole number, which the compiler knows.
+template <class T>
+struct ConstantRoot {
+  static DEFINITE_INLINE T Of(int n) { return Sqrt(T(static_cast<double>(n))); }
+};
+template <class S, int W>
+struct ConstantRoot<Lanes<S, W>> {
+  static DEFINITE_INLINE Lanes<S, W> Of(int n) {
+    return Lanes<S, W>(std::sqrt(static_cast<S>(n)));
+  }
+};
 
 DEFINITE_INLINE double Abs(double a) { return std::fabs(a); }
 template <int W>

@@ -1,6 +1,6 @@
 #pragma once
 
-// The largest eigenvalues of a diagonal matrix plus a positive one of rank one, diag(d) + z z^T:
+// Some eigenvalues of a diagonal matrix plus a positive one of rank one, diag(d) + z z^T:
 // the roots of the secular equation 1 + sum_i z_i^2 / (d_i - mu) = 0, one to the right of each pole
 // d_i.
 //
@@ -34,12 +34,19 @@ template <class T, int N>
 struct SecularEquation {
   T pole[N], weight[N];
 
-  template <int K>
-  DEFINITE_INLINE SecularRoots<T, N, K> LargestRoots() const {
-    return LargestRoots(std::make_integer_sequence<int, K>());
+  // Those right of poles kFirst to kFirst + K - 1, each sought from a number near it; a NaN, or one
+  // on the wrong side of a pole, costs time and nothing else.
+  template <int kFirst, int K>
+  DEFINITE_INLINE SecularRoots<T, N, K> Roots(const T (&near)[K]) const {
+    return Roots<kFirst>(near, std::make_integer_sequence<int, K>());
   }
 
+  // What no root exceeds.
+  DEFINITE_INLINE T Bound() const;
+
  private:
+  static constexpr double kLeastPart = 1e-12;  // of the bracket, between a start and a pole
+
   // A root between pole k and the next one, or behind the last.
   struct Bracket {
     T direction;  // from the pole that is the origin: 1 if that is on the left, -1 on the right
@@ -47,11 +54,11 @@ struct SecularEquation {
     T moved;      // by the last step
   };
 
-  template <int... m>
-  DEFINITE_INLINE auto LargestRoots(std::integer_sequence<int, m...>) const
-      -> SecularRoots<T, N, sizeof...(m)>;
+  template <int kFirst, int K, int... m>
+  DEFINITE_INLINE SecularRoots<T, N, K> Roots(const T (&near)[K],
+                                              std::integer_sequence<int, m...>) const;
   template <int k>
-  DEFINITE_INLINE Bracket Middle() const;
+  DEFINITE_INLINE Bracket From(const T& near) const;
   template <int k>
   DEFINITE_INLINE T Origin(const Bracket& b) const;
   template <int k>
@@ -70,14 +77,13 @@ struct SecularEquation {
 };
 
 template <class T, int N>
-template <int... m>
-DEFINITE_INLINE auto SecularEquation<T, N>::LargestRoots(std::integer_sequence<int, m...>) const
-    -> SecularRoots<T, N, sizeof...(m)> {
-  constexpr int K = sizeof...(m), kFirst = N - K;
+template <int kFirst, int K, int... m>
+DEFINITE_INLINE SecularRoots<T, N, K> SecularEquation<T, N>::Roots(
+    const T (&near)[K], std::integer_sequence<int, m...>) const {
   constexpr int kMostSteps = 40;  // not needed; so that no rounding can make it endless
   // All roots side by side: K short chains of operations instead of a long one. Each is one copy of
   // Step, which is most of what the compiler has to read.
-  Bracket b[K] = {Middle<kFirst + m>()...};
+  Bracket b[K] = {From<kFirst + m>(near[m])...};
   for (int step = 0; step < kMostSteps; ++step) {
     const auto unsettled = (IsUnsettled<kFirst + m>(b[m]) | ...);
     if (!Any(unsettled)) break;
@@ -90,20 +96,22 @@ DEFINITE_INLINE auto SecularEquation<T, N>::LargestRoots(std::integer_sequence<i
   return {{RootOf<kFirst + m>(b[m])...}};
 }
 
-// A start that counts as moved, so that all take a first step. Behind the last pole: the sum of the
-// weights, which no root exceeds.
+// A start that counts as moved, so that all take a first step.
 template <class T, int N>
 template <int k>
-DEFINITE_INLINE auto SecularEquation<T, N>::Middle() const -> Bracket {
-  if constexpr (k + 1 < N) {
-    const T half = T(0.5) * (pole[k + 1] - pole[k]);
-    return {T(1.0), half, half};
-  } else {
-    T sum = weight[0];
+DEFINITE_INLINE auto SecularEquation<T, N>::From(const T& near) const -> Bracket {
+  const T width = k + 1 < N ? pole[k + 1 < N ? k + 1 : k] - pole[k] : Bound() - pole[k];
+  // In this order a NaN becomes the lower bound.
+  const T offset = Min(Max(near - pole[k], T(kLeastPart) * width), T(1.0 - kLeastPart) * width);
+  return {T(1.0), offset, offset};
+}
+
+template <class T, int N>
+DEFINITE_INLINE T SecularEquation<T, N>::Bound() const {
+  T sum = pole[N - 1];
 #pragma GCC unroll 8
-    for (int i = 1; i < N; ++i) sum = sum + weight[i];
-    return {T(1.0), sum, sum};
-  }
+  for (int i = 0; i < N; ++i) sum = sum + weight[i];
+  return sum;
 }
 
 template <class T, int N>
@@ -123,7 +131,7 @@ DEFINITE_INLINE void SecularEquation<T, N>::ChooseOrigin(Bracket& b) const {
   if constexpr (k + 1 < N) {
     const T width = pole[k + 1] - pole[k];
     // A root that rounds onto the other pole is put a little beside it.
-    const T from_other = Max(width - b.offset, T(1e-12) * width);
+    const T from_other = Max(width - b.offset, T(kLeastPart) * width);
     const auto swap = from_other < b.offset;
     b.direction = Select(swap, -b.direction, b.direction);
     b.offset = Select(swap, from_other, b.offset);

@@ -68,6 +68,7 @@ struct Collision {
   static constexpr int kDofs = Stencil::kDofs;
   static constexpr auto kParameters = CollisionParameters<Penalty>(Length::kSide);
   static constexpr int kParams = static_cast<int>(kParameters.size());
+  static constexpr bool kTurns = Length::kTangents.of[0] != Tangent::kFixed;
   static constexpr std::span<const int> kMirror = [] {
     if constexpr (Penalty::kOneSided && requires { Stencil::kMirror; }) {
       return std::span<const int>(Stencil::kMirror);
@@ -82,6 +83,11 @@ struct Collision {
   }
   static std::string Source() {
     return std::string(Length::kSource) + "; psi: " + std::string(Penalty::kSource);
+  }
+
+  template <class T>
+  static DEFINITE_INLINE auto FrameOf(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
+    return Length::FrameOf(x, p[2]);
   }
 
   template <class T>
@@ -123,22 +129,25 @@ struct Collision {
       if constexpr (kSet == Set::kSplit) {
         f = TurnedInX<Length::kTangents, Length::kGramDeterminant>(f);
       }
-      return PullBack(f, ModesOf<kSet, kPart>(f, slopes));
+      return PullBack<Stencil>(f, ModesOf<kSet, kPart>(f, slopes));
     }
   }
 
-  // The modes of the nearest PSD matrix.
+  // The nearest PSD matrix, in stages (collision_nearest.hpp).
   template <class T>
-  static DEFINITE_INLINE auto NearestModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
-    const auto f = TurnedInX<Length::kTangents, Length::kGramDeterminant>(Length::FrameOf(x, p[2]));
+  requires(kTurns) static DEFINITE_INLINE
+      auto BeginNearest(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
+    const auto f = Length::FrameOf(x, p[2]);
     const auto slopes = SlopesAt(f, p);
-    if constexpr (Length::kTangents.of[0] == Tangent::kFixed) {
-      // All modes are orthogonal already.
-      return MapModes(PullBack(f, ModesOf<Set::kSplit, Part::kPositive>(f, slopes)),
-                      [](const T& l) { return Select(l < T(0.0), T(0.0), l); });
-    } else {
-      return definite::NearestModes<Stencil, Length::kTangents>(f, slopes.psi1, slopes.psi2);
-    }
+    return Projection<T>(f, TurnedRowsOf<Length::kTangents, Length::kGramDeterminant>(f),
+                         slopes.psi1, slopes.psi2);
+  }
+  // Without a free tangent all modes are orthogonal already.
+  template <class T>
+  requires(!kTurns) static DEFINITE_INLINE
+      auto Nearest(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
+    return MapModes(HessianModes<Set::kSplit, Part::kPositive>(x, p),
+                    [](const T& l) { return Select(l < T(0.0), T(0.0), l); });
   }
 
   // The Hessian as the paper assembles it: map^T H map summed over one or two terms (Eq. 17), each
@@ -161,6 +170,9 @@ struct Collision {
 
  private:
   using Arguments = PenaltyParameters<Penalty, 0>;
+  template <class T>
+  using Projection =
+      CollisionProjection<Stencil, Length::kTangents, decltype(Length::FrameOf(Vec<T, kDofs>(), T()))::kFreeSlots, T>;
 
   // A length whose frame set is not its pairs of free modes.
   static constexpr bool kSplits = requires(CollisionFrame<double, 4, 2> f) {

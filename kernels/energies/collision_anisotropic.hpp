@@ -62,21 +62,21 @@ struct CollisionAnisotropic {
       auto HessianModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     Mixed<T> mixed = MixedOf(x, p);
     if constexpr (kSet == Set::kFrame) {
-      return PullBack(mixed.f, FrameModesOf<kPart>(mixed));
+      return PullBack<Stencil>(mixed.f, FrameModesOf<kPart>(mixed));
     } else {
       if constexpr (kSet == Set::kSplit) {
         mixed.f = TurnedInX<kBothFree, Stencil::kGramDeterminant>(mixed.f);
       }
-      return PullBack(mixed.f, Exact<kPart>(mixed));
+      return PullBack<Stencil>(mixed.f, Exact<kPart>(mixed));
     }
   }
 
   template <class T>
-  static DEFINITE_INLINE auto NearestModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
+  static DEFINITE_INLINE auto BeginNearest(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const Mixed<T> mixed = MixedOf(x, p);
-    return definite::NearestModes<Stencil, kBothFree>(
-        TurnedInX<kBothFree, Stencil::kGramDeterminant>(mixed.f), mixed.psi1 * mixed.slope,
-        mixed.psi2);
+    return CollisionProjection<Stencil, kBothFree, 2, T>(
+        mixed.f, TurnedRowsOf<kBothFree, Stencil::kGramDeterminant>(mixed.f),
+        mixed.psi1 * mixed.slope, mixed.psi2);
   }
 
   // Eq. 35 on the frame: psi_l H_l with the curvature, psi_u H_u, and -psi_u H_u with the map D.
@@ -143,7 +143,7 @@ struct CollisionAnisotropic {
           UnsignedPlane<Primitive>::template SplitModes<kPart>(mixed.f, mixed.psi1_u, T(0.0));
       constexpr int kOfL = std::size(decltype(along_l.mode){});
       constexpr int kOfU = std::size(decltype(along_u.mode){}) - 1;  // without the curvature
-      FrameModes<T, kOfL + kOfU> both;
+      FrameModes<T, kOfL + kOfU, true> both;
       for (int i = 0; i < kOfL; ++i) both.mode[i] = along_l.mode[i];
       for (int i = 0; i < kOfU; ++i) both.mode[kOfL + i] = along_u.mode[1 + i];
       return both;

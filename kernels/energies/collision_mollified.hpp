@@ -88,7 +88,7 @@ struct CollisionMollified {
   }
 
   template <class T>
-  static DEFINITE_INLINE auto NearestModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
+  static DEFINITE_INLINE auto Nearest(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     return NearestPsdOfFour(HessianModes<Set::kExact, Part::kAll>(x, p));
   }
 

@@ -10,6 +10,7 @@ namespace definite {
 struct Analytic {
   static constexpr std::string_view kName = "analytic";
   static constexpr std::string_view kSource = "Shi & Kim 2023, Eqs. 11-13, 17; stable modes";
+  static constexpr bool kOutputs = true, kTimesFrame = true;
   static constexpr Exemption kExempt[] = {
       {Property::kRelabelling,
        "the paper's frame starts at e0, and the frame map is not orthogonal"},

@@ -15,15 +15,27 @@ namespace definite {
 struct Nearest {
   static constexpr std::string_view kName = "nearest";
   static constexpr std::string_view kSource = "docs/derivations.md, section 2";
+  static constexpr bool kOutputs = true;
   static constexpr std::array<Exemption, 0> kExempt{};
 
   template <class E, class T>
   static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    if constexpr (requires { E::NearestModes(x, p); }) {
-      return E::NearestModes(x, p);
+    if constexpr (requires { E::BeginNearest(x, p); }) {
+      return Refined(E::BeginNearest(x, p));
+    } else if constexpr (requires { E::Nearest(x, p); }) {
+      return E::Nearest(x, p);
     } else {
-      return NearestPsd(E::template HessianModes<Set::kExact, Part::kAll>(x, p));
+      return NearestPsd(Stacked(E::template HessianModes<Set::kExact, Part::kAll>(x, p)));
     }
+  }
+
+  // The same in stages, where the energy has them.
+  template <class E, class T>
+  requires requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+    E::BeginNearest(x, p);
+  }
+  static DEFINITE_INLINE auto Begin(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+    return E::BeginNearest(x, p);
   }
 };
 

@@ -11,6 +11,7 @@ namespace definite {
 struct Numeric {
   static constexpr std::string_view kName = "numeric";
   static constexpr std::string_view kSource = "Eigen SelfAdjointEigenSolver, clamp, rebuild";
+  static constexpr bool kOutputs = true;
   static constexpr Exemption kExempt[] = {
       {Property::kAccurate, "its error is u |H|, however small the result: deep penetration"},
       {Property::kPsd, "the same error leaves eigenvalues of about -u |H|"},

@@ -14,6 +14,7 @@ namespace definite {
 struct Split {
   static constexpr std::string_view kName = "split";
   static constexpr std::string_view kSource = "docs/derivations.md, section 1";
+  static constexpr bool kOutputs = true;
   static constexpr std::array<Exemption, 0> kExempt{};
 
   template <class E, class T>

@@ -34,6 +34,7 @@ inline constexpr Tangents kBothByRegion{{Tangent::kByRegion, Tangent::kByRegion}
 // and then the vector between the closest points.
 template <class T, int kVertices, int kSlots>
 struct CollisionFrame {
+  static constexpr int kFreeSlots = kSlots;
   static constexpr int kCoordinates = 3 * (kSlots + 1), kDofs = 3 * kVertices;
   T scale, lift;              // lengths below are in units of 1 / (scale lift)
   MaskOf<T> outside;          // not in the domain; the rest is then finite and meaningless
@@ -143,8 +144,9 @@ struct FrameMode {
   T sigma;
   Vec3<T> tangent;
 };
-template <class T, int K>
+template <class T, int K, bool kHasSlots>
 struct FrameModes {
+  static constexpr bool kTurning = kHasSlots;  // some mode has a slot
   FrameMode<T> mode[K];
 };
 
@@ -156,7 +158,7 @@ DEFINITE_INLINE auto PairModes(const CollisionFrame<T, kVertices, kSlots>& f, co
   constexpr int kTurning =
       (kTangents.of[0] != Tangent::kFixed) + (kTangents.of[1] != Tangent::kFixed);
   constexpr int kCount = kPart == Part::kCurvature ? 1 : kPart == Part::kAll ? 3 + kTurning : 3;
-  FrameModes<T, kCount> modes;
+  FrameModes<T, kCount, kPart != Part::kCurvature && kTurning != 0> modes;
   modes.mode[0] = {psi2, -1, T(0.0), f.n};
   if constexpr (kPart != Part::kCurvature) {
 #pragma GCC unroll 2
@@ -192,24 +194,27 @@ DEFINITE_INLINE auto PairModes(const CollisionFrame<T, kVertices, kSlots>& f, co
 }
 
 // In x: q -> S^T q, block j is sigma S_ij n + w_j t.
-template <class T, int kVertices, int kSlots, int K>
-DEFINITE_INLINE Modes<T, 3 * kVertices, K> PullBack(const CollisionFrame<T, kVertices, kSlots>& f,
-                                                    const FrameModes<T, K>& frame_modes) {
-  Modes<T, 3 * kVertices, K> modes;
+template <class Stencil, class T, int kSlots, int K, bool kTurning>
+DEFINITE_INLINE auto PullBack(const CollisionFrame<T, Stencil::kVertices, kSlots>& f,
+                              const FrameModes<T, K, kTurning>& frame_modes) {
+  FramedModes<T, Stencil, K, kTurning> modes;
+  modes.w = OverEdges<Stencil>(f.w, 1.0);
+  modes.n = f.n;
 #pragma GCC unroll 8
   for (int m = 0; m < K; ++m) {
     const FrameMode<T>& q = frame_modes.mode[m];
     modes.lambda[m] = q.lambda;
-    modes.v[m] = Kron(f.w, q.tangent);
-    if (q.slot >= 0) modes.v[m] = AddKron(modes.v[m], q.sigma * f.rows[q.slot], f.n);
+    modes.t[m] = q.tangent;
+    modes.turns[m] = q.slot >= 0;
+    if (q.slot >= 0) modes.r[m] = OverEdges<Stencil>(q.sigma * f.rows[q.slot], 0.0);
   }
   return modes;
 }
 
 // A Hessian in the frame coordinates c with the map S to them (Eq. 19): modes as stacked vectors.
-template <class T, int kVertices, int kSlots, int K>
+template <class T, int kVertices, int kSlots, int K, bool kTurning>
 auto ToFrameTerm(const CollisionFrame<T, kVertices, kSlots>& f,
-                 const FrameModes<T, K>& frame_modes) {
+                 const FrameModes<T, K, kTurning>& frame_modes) {
   using Frame = CollisionFrame<T, kVertices, kSlots>;
   FrameTerm<T, Frame::kCoordinates, Frame::kDofs, K> term;
   for (int m = 0; m < K; ++m) {
@@ -233,24 +238,27 @@ auto ToFrameTerm(const CollisionFrame<T, kVertices, kSlots>& f,
   return term;
 }
 
-// The same geometric term in orthogonal vectors of x: rows and tangents turned so that both rows
-// are orthogonal and as long as w. In general that is the singular value decomposition of the edges
-// over their lengths, rows[i] / len_i. kGramDeterminant: |rows[0]|^2 |rows[1]|^2 - (rows[0] .
-// rows[1])^2, a constant of the stencil.
+// The free tangents of a frame and their rows over lengths, rows[i] / len_i, turned so that the rows
+// are orthogonal: sum_i rows[i] t[i]^T / len_i = sum_k sigma[k] v[k] t[k]^T, the singular value
+// decomposition. sigma descends.
+template <class T, int kVertices, int kSlots>
+struct TurnedRows {
+  Vec<T, kVertices> v[kSlots];  // unit rows; zero where the tangent is fixed
+  T sigma[kSlots];
+  Vec3<T> t[kSlots];
+};
+
+// kGramDeterminant: |rows[0]|^2 |rows[1]|^2 - (rows[0] . rows[1])^2, a constant of the stencil.
 // Source: docs/derivations.md, section 1.
 template <Tangents kTangents, int kGramDeterminant, class T, int kVertices, int kSlots>
-DEFINITE_INLINE CollisionFrame<T, kVertices, kSlots> TurnedInX(
-    CollisionFrame<T, kVertices, kSlots> f) {
-  const T width = Sqrt(Dot(f.w, f.w));
-  const T inverse_width = T(1.0) / width;
-  if constexpr (kTangents.of[1] == Tangent::kFixed) {
-    // One free tangent or none: there is nothing to turn.
-    if constexpr (kTangents.of[0] == Tangent::kFree) {
-      const T length = Sqrt(Dot(f.rows[0], f.rows[0]));
-      f.inverse_length[0] = f.inverse_length[0] * length * inverse_width;
-      f.rows[0] = (width / length) * f.rows[0];
-    }
-    return f;
+requires(kSlots > 0) DEFINITE_INLINE TurnedRows<T, kVertices, kSlots> TurnedRowsOf(
+    const CollisionFrame<T, kVertices, kSlots>& f) {
+  TurnedRows<T, kVertices, kSlots> turned;
+  if constexpr (kSlots == 1) {
+    const T length2 = Dot(f.rows[0], f.rows[0]), inverse = T(1.0) / Sqrt(length2);
+    turned.v[0] = inverse * f.rows[0];
+    turned.sigma[0] = f.inverse_length[0] * (length2 * inverse);
+    turned.t[0] = f.t[0];
   } else {
     T inverse[2] = {f.inverse_length[0], f.inverse_length[1]};
     if constexpr (kTangents.of[0] == Tangent::kByRegion) {
@@ -260,29 +268,44 @@ DEFINITE_INLINE CollisionFrame<T, kVertices, kSlots> TurnedInX(
     const T m00 = Dot(g0, g0), m01 = Dot(g0, g1), m11 = Dot(g1, g1);
     const T half = T(0.5) * (m00 - m11);
     const T root = Sqrt(MulAdd(half, half, m01 * m01));
-    const T larger2 = T(0.5) * (m00 + m11) + root;  // square of the larger singular value
-    const T area = inverse[0] * inverse[1];
-    const auto nothing = larger2 <= T(0.0), single = area <= T(0.0);
-    const T safe2 = Select(nothing, T(1.0), larger2);
-    const T sigma0 = Sqrt(safe2);
-    // From the determinant, without cancellation.
-    const T sigma1 = Sqrt(T(double{kGramDeterminant}) * (area * area) / safe2);
-    // The larger one belongs to (c, s).
-    const T denominator = Abs(half) + root;
-    const T t = m01 / Select(denominator <= T(0.0), T(1.0), denominator);
-    const T norm = T(1.0) / Sqrt(MulAdd(t, t, T(1.0)));
-    const T product = t * norm;
+    const T larger2 = T(0.5) * (m00 + m11) + root;
+    // None free, or one: then the smaller is zero, and its row too.
+    const T square = Select(larger2 <= T(0.0), T(1.0), larger2);
+    const T inverse_larger = T(1.0) / Sqrt(square);
+    const T area = ConstantRoot<T>::Of(kGramDeterminant) * (inverse[0] * inverse[1]);
+    turned.sigma[0] = square * inverse_larger;
+    turned.sigma[1] = area * inverse_larger;  // from the determinant, without cancellation
+    // (c, s) belongs to the larger one.
+    const T along = Abs(half) + root;
+    const T norm2 = MulAdd(along, along, m01 * m01);
+    const T norm = T(1.0) / Sqrt(Select(norm2 <= T(0.0), T(1.0), norm2));
+    const T cosine = Select(norm2 <= T(0.0), T(1.0), along * norm), sine = m01 * norm;
     const auto swapped = half < T(0.0);
-    const T c = Select(swapped, product, norm), s = Select(swapped, norm, product);
-    const Vec3<T> t0 = f.t[0];
-    f.t[0] = c * t0 + s * f.t[1];
-    f.t[1] = c * f.t[1] - s * t0;
-    f.rows[0] = (width / sigma0) * (c * g0 + s * g1);
-    f.rows[1] = (width / Select(single, T(1.0), sigma1)) * (c * g1 - s * g0);
-    f.inverse_length[0] = sigma0 * inverse_width;
-    f.inverse_length[1] = sigma1 * inverse_width;
-    return f;
+    const T c = Select(swapped, sine, cosine), s = Select(swapped, cosine, sine);
+    turned.t[0] = c * f.t[0] + s * f.t[1];
+    turned.t[1] = c * f.t[1] - s * f.t[0];
+    turned.v[0] = inverse_larger * (c * g0 + s * g1);
+    const T inverse_smaller = turned.sigma[0] / Select(area <= T(0.0), T(1.0), area);
+    turned.v[1] = inverse_smaller * (c * g1 - s * g0);
   }
+  return turned;
+}
+
+// The same geometric term in orthogonal vectors of x: as a frame whose rows are as long as w.
+template <Tangents kTangents, int kGramDeterminant, class T, int kVertices, int kSlots>
+DEFINITE_INLINE CollisionFrame<T, kVertices, kSlots> TurnedInX(
+    CollisionFrame<T, kVertices, kSlots> f) {
+  if constexpr (kTangents.of[0] != Tangent::kFixed) {
+    const auto turned = TurnedRowsOf<kTangents, kGramDeterminant>(f);
+    const T width2 = Dot(f.w, f.w), inverse_width = T(1.0) / Sqrt(width2);
+#pragma GCC unroll 2
+    for (int k = 0; k < kSlots; ++k) {
+      f.rows[k] = (width2 * inverse_width) * turned.v[k];
+      f.inverse_length[k] = turned.sigma[k] * inverse_width;
+      f.t[k] = turned.t[k];
+    }
+  }
+  return f;
 }
 
 }  // namespace definite

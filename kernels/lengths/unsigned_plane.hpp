@@ -50,7 +50,7 @@ struct UnsignedPlane {
   static DEFINITE_INLINE auto SplitModes(const CollisionFrame<T, 4, 2>& f, const T& psi1,
                                          const T& psi2) {
     constexpr int kCount = kPart == Part::kCurvature ? 1 : kPart == Part::kPositive ? 3 : 5;
-    FrameModes<T, kCount> modes;
+    FrameModes<T, kCount, kPart != Part::kCurvature> modes;
     modes.mode[0] = {psi2, -1, T(0.0), f.n};
     if constexpr (kPart != Part::kCurvature) {
       const T slide = psi1 / f.l;  // Eq. 52; of w (x) t, and minus it of the second term

@@ -19,6 +19,9 @@ struct EdgeEdge {
   static constexpr int kRelabellings[] = {2, 3, 0, 1, 1, 0, 3, 2, 3, 2, 1, 0};
   static constexpr int kMirror[] = {0, 1, 3, 2};
 
+  static constexpr int kEdges = 3;
+  static constexpr int kInEdges[4][3] = {{-1, 0, -1}, {1, 0, 0}, {0, -1, 1}, {0, 1, 0}};
+
   // e0 = x1 - x0, e1 = x3 - x2, e2 = x2 - x0.
   template <class T>
   static DEFINITE_INLINE Edges<T> EdgesOf(const Vec<T, kDofs>& x) {

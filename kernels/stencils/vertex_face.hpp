@@ -20,6 +20,9 @@ struct VertexFace {
   static constexpr int kRelabellings[] = {0, 2, 3, 1, 0, 3, 1, 2};
   static constexpr int kMirror[] = {0, 3, 2, 1};  // one that does flip it
 
+  static constexpr int kEdges = 3;
+  static constexpr int kInEdges[4][3] = {{0, 0, 1}, {1, 0, 0}, {-1, -1, -1}, {0, 1, 0}};
+
   // e0 = x1 - x2, e1 = x3 - x2, e2 = x0 - x2.
   template <class T>
   static DEFINITE_INLINE Edges<T> EdgesOf(const Vec<T, kDofs>& x) {

@@ -16,6 +16,10 @@ struct VertexVertex {
   static constexpr int kDofs = 6;
   static constexpr int kDimension = 3;
   static constexpr int kRelabellings[] = {1, 0};
+
+  // The edge x1 - x0.
+  static constexpr int kEdges = 1;
+  static constexpr int kInEdges[2][1] = {{-1}, {1}};
 };
 
 }  // namespace definite

@@ -1,0 +1,101 @@
+// definite speed: rows against each other and against the machine.
+
+#include "benchmarks/speed/speed.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <memory>
+
+#include "tools/command_line.hpp"
+#include "tools/output_file.hpp"
+
+namespace definite {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> kernels = {"collision/*/signed/quadratic/*"};
+  std::string distribution = "active", seed = "42";
+  std::vector<std::string> rings = {"L1", "L2", "memory"};
+  std::vector<int> threads = {1, 2};
+  int rounds = 15;
+  std::optional<std::string> json;
+};
+
+Level LevelNamed(const std::string& name) {
+  for (Level level : {Level::kL1, Level::kL2, Level::kMemory}) {
+    if (name == LevelName(level)) return level;
+  }
+  throw UsageError(fmt::format("--ring '{}': expected L1, L2 or memory", name));
+}
+
+int RunSpeedCommand(const Options& options) {
+  SpeedPlan plan;
+  plan.rows = RowsMatching(options.kernels, Outputs::kAll);
+  plan.distribution = &DistributionNamed(options.distribution);
+  plan.seed = ParseCount("--seed", options.seed, 0);
+  plan.levels.clear();
+  for (const std::string& ring : options.rings) plan.levels.push_back(LevelNamed(ring));
+  plan.threads = options.threads;
+  plan.rounds = options.rounds;
+  std::erase_if(plan.rows, [&](const KernelRow* row) {
+    return !plan.distribution->supports(row->energy->stencil);
+  });
+  if (plan.rows.empty()) {
+    throw UsageError(fmt::format("--distribution '{}': it cannot draw any of the rows asked for",
+                                 options.distribution));
+  }
+  std::optional<OutputFile> json;
+  if (options.json) json.emplace("--json", *options.json);
+
+  Progress progress(isatty(STDERR_FILENO) != 0);
+  const SpeedResult result = RunSpeed(plan, progress);
+  if (options.json != "-") fmt::print("{}", ToTable(result));
+  if (json) {
+    json->Commit(ToJson(result, CommandWords())
+                     .dump(1, ' ', false, nlohmann::json::error_handler_t::replace) +
+                 "\n");
+  }
+  if (result.partial) {
+    std::fputs("definite: interrupted; the result is partial: what was complete by then\n", stderr);
+    return kInterrupted;
+  }
+  return kOk;
+}
+
+}  // namespace
+
+void AddSpeed(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "speed", "Times rows against each other, with the floor that the machine sets");
+  AddKernelsOption(*command, options->kernels);
+  AddDistributionOption(*command, options->distribution);
+  AddSeedOption(*command, options->seed);
+  command
+      ->add_option("--ring", options->rings, "Where the outputs go: L1, L2, memory (default all)")
+      ->type_name("LEVEL")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--threads", options->threads, "Threads, may be given several times (default 1, 2)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024))
+      ->allow_extra_args(false);
+  command->add_option("--rounds", options->rounds, "Rounds, each in an order of its own")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000));
+  AddJsonOption(*command, options->json);
+  command->footer(
+      "The rows of an energy are timed in turn, in random order, on the same configurations. A\n"
+      "floor is the time that its additions, multiplications and fused multiply-adds, its\n"
+      "divisions and roots, or its stores would take alone at the rates measured in this run.\n"
+      "Thread CPU time on one thread, wall time on more.\n\n"
+      "Examples:\n"
+      "  definite speed --ring L1 --threads 1\n"
+      "  definite speed --kernels '*/signed/quadratic/nearest/*' --kernels '*/quadratic/numeric/f64'\n"
+      "  definite speed --distribution paper --json speed.json");
+  command->callback([options, &exit_code] { exit_code = RunSpeedCommand(*options); });
+}
+
+}  // namespace definite
