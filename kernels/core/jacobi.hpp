@@ -14,6 +14,28 @@ struct EigenSystem {
   T values[N], vectors[N][N];
 };
 
+// Turns (x, y) by the angle of cosine c and sine s.
+template <class T>
+DEFINITE_INLINE void Turn(T& x, T& y, const T& c, const T& s) {
+  const T old = x;
+  x = MulAdd(s, y, c * old);
+  y = MulAdd(c, y, -(s * old));
+}
+
+// Turns all that a rotation of rows p < q touches, but for what it does to these two themselves.
+template <class T, int N>
+DEFINITE_INLINE void TurnOthers(int p, int q, const T& c, const T& s, T (&a)[N][N],
+                                T (&vectors)[N][N]) {
+#pragma GCC unroll 4
+  for (int i = 0; i < p; ++i) Turn(a[i][p], a[i][q], c, s);
+#pragma GCC unroll 4
+  for (int i = p + 1; i < q; ++i) Turn(a[p][i], a[i][q], c, s);
+#pragma GCC unroll 4
+  for (int i = q + 1; i < N; ++i) Turn(a[p][i], a[q][i], c, s);
+#pragma GCC unroll 4
+  for (int i = 0; i < N; ++i) Turn(vectors[i][p], vectors[i][q], c, s);
+}
+
 // Cyclic Jacobi rotations, a fixed number of sweeps: convergence is quadratic once the entries off
 // the diagonal are small, and what is left after the last sweep is below rounding. Reads the upper
 // triangle.
@@ -24,24 +46,12 @@ DEFINITE_INLINE EigenSystem<T, N> JacobiEigen(T (&a)[N][N]) {
   for (int i = 0; i < N; ++i) {
     for (int j = 0; j < N; ++j) e.vectors[i][j] = T(i == j ? 1.0 : 0.0);
   }
-  const auto turn = [](T& x, T& y, const T& c, const T& s) {
-    const T old = x;
-    x = MulAdd(s, y, c * old);
-    y = MulAdd(c, y, -(s * old));
-  };
   const auto rotate = [&](int p, int q) {
     const auto [first, second, c, s] = SymmetricEigen2(a[p][p], a[p][q], a[q][q]);
     a[p][p] = first;
     a[q][q] = second;
     a[p][q] = T(0.0);
-#pragma GCC unroll 4
-    for (int i = 0; i < p; ++i) turn(a[i][p], a[i][q], c, s);
-#pragma GCC unroll 4
-    for (int i = p + 1; i < q; ++i) turn(a[p][i], a[i][q], c, s);
-#pragma GCC unroll 4
-    for (int i = q + 1; i < N; ++i) turn(a[p][i], a[q][i], c, s);
-#pragma GCC unroll 4
-    for (int i = 0; i < N; ++i) turn(e.vectors[i][p], e.vectors[i][q], c, s);
+    TurnOthers(p, q, c, s, a, e.vectors);
   };
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     if constexpr (N <= 5) {
@@ -53,6 +63,57 @@ DEFINITE_INLINE EigenSystem<T, N> JacobiEigen(T (&a)[N][N]) {
     } else {
       for (int p = 0; p < N - 1; ++p) {
         for (int q = p + 1; q < N; ++q) rotate(p, q);
+      }
+    }
+  }
+  for (int m = 0; m < N; ++m) e.values[m] = a[m][m];
+  return e;
+}
+
+// The same with entries of at most `negligible` left as they are, until a sweep finds no other.
+// Each lane does what it would do alone. A sweep goes in rounds of disjoint pairs, p + q = round
+// modulo N (or N - 1, where the last row meets the one that is left over): their angles do not wait
+// for each other.
+template <class T, int N>
+EigenSystem<T, N> JacobiEigenInRounds(T (&a)[N][N], const T& negligible) {
+  constexpr int kMostSweeps = 15;  // not needed; so that no rounding can make it endless
+  constexpr int kRounds = N % 2 == 0 ? N - 1 : N, kPairs = N / 2;
+  EigenSystem<T, N> e;
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < N; ++j) e.vectors[i][j] = T(i == j ? 1.0 : 0.0);
+  }
+  bool turned = true;
+  for (int sweep = 0; turned && sweep < kMostSweeps; ++sweep) {
+    turned = false;
+    for (int round = 0; round < kRounds; ++round) {
+      int p[kPairs], q[kPairs];
+      T c[kPairs], s[kPairs];
+      bool any[kPairs];
+      int pairs = 0;
+      for (int i = 0; i < kRounds; ++i) {
+        int j = (round - i + kRounds) % kRounds;
+        if (j == i && N % 2 == 0) j = N - 1;
+        if (j <= i) continue;
+        p[pairs] = i;
+        q[pairs++] = j;
+      }
+      for (int k = 0; k < kPairs; ++k) {
+        T& first = a[p[k]][p[k]];
+        T& entry = a[p[k]][q[k]];
+        T& second = a[q[k]][q[k]];
+        const auto turns = Abs(entry) > negligible;
+        any[k] = Any(turns);
+        const auto system = SymmetricEigen2(first, entry, second);
+        first = Select(turns, system.first, first);
+        second = Select(turns, system.second, second);
+        entry = Select(turns, T(0.0), entry);
+        c[k] = Select(turns, system.c, T(1.0));
+        s[k] = Select(turns, system.s, T(0.0));
+      }
+      for (int k = 0; k < kPairs; ++k) {
+        if (!any[k]) continue;
+        TurnOthers(p[k], q[k], c[k], s[k], a, e.vectors);
+        turned = true;
       }
     }
   }

@@ -15,6 +15,14 @@ inline constexpr double kUnitCubeRoot<double> = 5e-6;
 template <int W>
 inline constexpr double kUnitCubeRoot<Lanes<double, W>> = 5e-6;
 
+// The unit roundoff: half the distance from 1 to the next number.
+template <class T>
+inline constexpr double kUnitRoundoff = 0x1p-113;  // float128 and wider
+template <>
+inline constexpr double kUnitRoundoff<double> = 0x1p-53;
+template <int W>
+inline constexpr double kUnitRoundoff<Lanes<double, W>> = 0x1p-53;
+
 // The sine under which two edges count as parallel; a constant of the protocol.
 inline constexpr double kTau = 1e-8;
 // Lengths and areas below these (in units of the largest edge component) give Hessians that double
