@@ -32,9 +32,12 @@ std::size_t RankOf(std::string_view name, const std::array<std::string_view, kCo
   return static_cast<std::size_t>(std::ranges::find(order, name) - order.begin());
 }
 
-// A filter that is another one, computed in another way: through the frame, or as printed.
+// A filter that is another one, computed in another way: through the frame, as printed, or by
+// another eigensolver.
 bool IsDuplicate(std::string_view filter) {
-  return filter.ends_with("_frame") || filter.ends_with("_printed");
+  return filter.ends_with("_frame") || filter.ends_with("_printed") ||
+         filter.starts_with("numeric_") || filter.starts_with("ql_") ||
+         filter.starts_with("jacobi_");
 }
 
 std::vector<PlannedSweep> Sweeps() {

@@ -22,6 +22,9 @@ Quad ExemptScale(Case& at) {
   return FrobeniusNorm(at.Truth().Hessian()) + FrobeniusNorm(at.Definition("absolute"));
 }
 
+// The unit roundoff of what a row computes in, over u.
+double RoundoffOf(const KernelRow& row) { return row.filter == "numeric_float" ? 0x1p29 : 1; }
+
 std::optional<Finding> Accuracy(Case& at) {
   std::optional<Finding> worst;
   for (const KernelRow* row : at.Of().rows) {
@@ -29,7 +32,8 @@ std::optional<Finding> Accuracy(Case& at) {
     const Matrix& definition = at.Definition(row->filter);
     Quad scale = FrobeniusNorm(definition);
     if (!row->Promises(Property::kAccurate)) scale += ExemptScale(at);
-    double violation = at.Ratio(FrobeniusNorm(Unpacked(at.Output(*row)) - definition), scale);
+    double violation =
+        at.Ratio(FrobeniusNorm(Unpacked(at.Output(*row)) - definition), scale) / RoundoffOf(*row);
     if (!row->Promises(Property::kFinite)) {
       // The printed formulas lose digits like u/|l| and u/sin^2 on top.
       const double x = static_cast<double>(FrobeniusNorm(ToVector(at.X())));
@@ -49,7 +53,7 @@ std::optional<Finding> Definiteness(Case& at) {
     const Numbers& f = at.Output(*row);
     Quad scale = FrobeniusNorm(f);
     if (!promises) scale += ExemptScale(at);
-    const double defect = std::max(0.0, -Eigenvalues(f).front());
+    const double defect = std::max(0.0, -Eigenvalues(f).front()) / RoundoffOf(*row);
     worst = Worse(worst, Finding{defect == 0 ? 0
                                              : defect / (kRatioBound * at.Energy().dofs * kUnit *
                                                          static_cast<double>(scale)),

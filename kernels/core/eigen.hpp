@@ -13,11 +13,27 @@ namespace definite {
 inline double ClampToPsd(double lambda) { return lambda < 0 ? 0 : lambda; }  // NaN stays NaN
 
 // sum map(lambda) v v^T over the eigenpairs of h; by Jacobi rotations where Eigen's solver does not
-// converge. N: 6, 9, 12.
+// converge. N: 5, 6, 9, 12.
 template <int N>
 PackedSym<double, N> MapEigenvalues(const PackedSym<double, N>& h, EigenvalueMap map) {
   PackedSym<double, N> result;
   internal::MapEigenvalues<N>(h.a, map, result.a);
+  return result;
+}
+
+// h minus its negative eigenpairs. N: 12.
+template <int N>
+PackedSym<double, N> DropNegative(const PackedSym<double, N>& h) {
+  PackedSym<double, N> result;
+  internal::DropNegative<N>(h.a, result.a);
+  return result;
+}
+
+// The clamp of h rounded to float. N: 12.
+template <int N>
+PackedSym<double, N> ClampInFloat(const PackedSym<double, N>& h) {
+  PackedSym<double, N> result;
+  internal::ClampInFloat<N>(h.a, result.a);
   return result;
 }
 

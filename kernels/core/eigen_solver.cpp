@@ -1,8 +1,12 @@
 #include "kernels/core/eigen_solver.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
 
+#include "kernels/core/eigen.hpp"
 #include "kernels/core/jacobi.hpp"
+#include "kernels/core/precision.hpp"
 
 namespace definite {
 
@@ -11,9 +15,15 @@ namespace {
 template <int N>
 using EigenMatrix = Eigen::Matrix<double, N, N>;
 
+template <int N>
+struct Eigenpairs {
+  Eigen::Matrix<double, N, 1> values;
+  EigenMatrix<N> vectors;  // in the columns
+};
+
 // Our own rotations, which always converge. Reads the lower triangle.
 template <int N>
-EigenMatrix<N> MapEigenvaluesByJacobi(const EigenMatrix<N>& h, EigenvalueMap map) {
+Eigenpairs<N> SolveByJacobi(const EigenMatrix<N>& h) {
   double a[N][N];
   const double scale =
       h.template triangularView<Eigen::Lower>().toDenseMatrix().cwiseAbs().maxCoeff();
@@ -21,24 +31,38 @@ EigenMatrix<N> MapEigenvaluesByJacobi(const EigenMatrix<N>& h, EigenvalueMap map
     for (int j = i; j < N; ++j) a[i][j] = h(j, i) / scale;  // so that no square overflows
   }
   const EigenSystem<double, N> e = JacobiEigen(a);
-  EigenMatrix<N> mapped = EigenMatrix<N>::Zero();
+  Eigenpairs<N> pairs;
   for (int m = 0; m < N; ++m) {
-    Eigen::Matrix<double, N, 1> v;
-    for (int i = 0; i < N; ++i) v[i] = e.vectors[i][m];
-    mapped += map(scale * e.values[m]) * v * v.transpose();
+    pairs.values[m] = scale * e.values[m];
+    for (int i = 0; i < N; ++i) pairs.vectors(i, m) = e.vectors[i][m];
   }
-  return mapped;
+  return pairs;
+}
+
+// Reads the lower triangle.
+template <int N>
+Eigenpairs<N> Solve(const EigenMatrix<N>& h) {
+  const Eigen::SelfAdjointEigenSolver<EigenMatrix<N>> solver(h);
+  // Eigen 3.4 runs out of iterations on a few 12x12 Hessians, three of 1.1 10^8 here: seven of
+  // their eigenvalues are zero, and beside zeros on the diagonal it waits for couplings that
+  // rounding keeps alive. Which ones they are depends on the instruction set.
+  if (solver.info() != Eigen::Success) return SolveByJacobi(h);
+  return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 template <int N>
 EigenMatrix<N> MapEigenvaluesOf(const EigenMatrix<N>& h, EigenvalueMap map) {
-  const Eigen::SelfAdjointEigenSolver<EigenMatrix<N>> solver(h);  // reads the lower triangle
-  // Eigen 3.4 runs out of iterations on a few 12x12 Hessians, three of 1.1 10^8 here: seven of
-  // their eigenvalues are zero, and beside zeros on the diagonal it waits for couplings that
-  // rounding keeps alive. Which ones they are depends on the instruction set.
-  if (solver.info() != Eigen::Success) return MapEigenvaluesByJacobi(h, map);
-  const EigenMatrix<N>& v = solver.eigenvectors();
-  return v * solver.eigenvalues().unaryExpr(map).asDiagonal() * v.transpose();
+  const auto [values, v] = Solve(h);
+  return v * values.unaryExpr(map).asDiagonal() * v.transpose();
+}
+
+template <int N>
+EigenMatrix<N> Unpack(const double* packed) {
+  EigenMatrix<N> full;
+  for (int i = 0; i < N; ++i) {
+    for (int j = i; j < N; ++j) full(j, i) = *packed++;
+  }
+  return full;
 }
 
 template <int N>
@@ -54,11 +78,33 @@ namespace internal {
 
 template <int N>
 void MapEigenvalues(const double* h, EigenvalueMap map, double* result) {
-  EigenMatrix<N> full;
-  for (int i = 0; i < N; ++i) {
-    for (int j = i; j < N; ++j) full(j, i) = *h++;
+  Pack(MapEigenvaluesOf(Unpack<N>(h), map), result);
+}
+
+template <int N>
+void DropNegative(const double* h, double* result) {
+  EigenMatrix<N> full = Unpack<N>(h);
+  const auto [values, v] = Solve(full);
+  // Seven eigenvalues are zero, and half of them a rounding error below it.
+  const double negligible = kUnitRoundoff<double> * values.cwiseAbs().maxCoeff();
+  for (int m = 0; m < N; ++m) {
+    if (values[m] < -negligible) full.noalias() -= values[m] * v.col(m) * v.col(m).transpose();
   }
-  Pack(MapEigenvaluesOf(full, map), result);
+  Pack(full, result);
+}
+
+template <int N>
+void ClampInFloat(const double* h, double* result) {
+  using Single = Eigen::Matrix<float, N, N>;
+  const EigenMatrix<N> full = Unpack<N>(h);
+  double largest = 0;  // floats have less range: the matrix goes in units of its largest entry
+  for (int k = 0; k < N * (N + 1) / 2; ++k) largest = std::max(largest, std::abs(h[k]));
+  const double scale = largest > 0 ? largest : 1;
+  const Eigen::SelfAdjointEigenSolver<Single> solver(Single((full / scale).template cast<float>()));
+  if (solver.info() != Eigen::Success) return MapEigenvalues<N>(h, ClampToPsd, result);
+  const Single& v = solver.eigenvectors();
+  const Single clamped = v * solver.eigenvalues().cwiseMax(0).asDiagonal() * v.transpose();
+  Pack(EigenMatrix<N>(scale * clamped.template cast<double>()), result);
 }
 
 template <int F, int D>
@@ -74,6 +120,9 @@ void PullBack(const double* lambda, const double* modes, int count, const double
   Pack(EigenMatrix<D>(s.transpose() * h * s), result);
 }
 
+template void DropNegative<12>(const double*, double*);
+template void ClampInFloat<12>(const double*, double*);
+template void MapEigenvalues<5>(const double*, EigenvalueMap, double*);
 template void MapEigenvalues<6>(const double*, EigenvalueMap, double*);
 template void MapEigenvalues<9>(const double*, EigenvalueMap, double*);
 template void MapEigenvalues<12>(const double*, EigenvalueMap, double*);

@@ -14,6 +14,10 @@ namespace internal {
 // row by row.
 template <int N>
 void MapEigenvalues(const double* h, EigenvalueMap map, double* result);
+template <int N>
+void DropNegative(const double* h, double* result);
+template <int N>
+void ClampInFloat(const double* h, double* result);
 template <int F, int D>
 void PullBack(const double* lambda, const double* modes, int count, const double* map,
               EigenvalueMap eigenvalues, double* result);
