@@ -59,7 +59,7 @@ class Package(unittest.TestCase):
                    for path in (ROOT / "kernels").rglob("*.hpp")}
         files = {re.sub(r"Targets-\w+", "Targets-BUILD_TYPE", name) for name in self.files}
         self.assertEqual(files, headers | {LIBRARY} | {PACKAGE + name for name in (
-            "FindSLEEF.cmake", "definiteConfig.cmake", "definiteConfigVersion.cmake",
+            "FindOpenBLAS.cmake", "FindSLEEF.cmake", "definiteConfig.cmake", "definiteConfigVersion.cmake",
             "definiteTargets.cmake", "definiteTargets-BUILD_TYPE.cmake")})
 
     def test_no_file_mentions_the_sources_or_the_build(self):
