@@ -1734,6 +1734,12 @@ TEST(Filters, AreWhatTheirNamesSay) {
     EXPECT_EQ(define("gauss_newton").entries, truth.Curvature().entries);
     EXPECT_EQ(define("numeric").entries, truth.Nearest().entries);
     EXPECT_EQ(define("analytic").entries, define("analytic_printed").entries);
+    for (const char* name : {"numeric_negatives", "numeric_reduced", "numeric_lapack_d",
+                             "numeric_lapack_r", "numeric_float", "numeric_probed", "ql_12", "ql_5",
+                             "jacobi_12", "jacobi_5"})
+      EXPECT_EQ(define(name).entries, truth.Nearest().entries) << name;
+    for (const char* name : {"ql_9", "jacobi_9"})
+      EXPECT_EQ(define(name).entries, define("analytic").entries) << name;
 
     // The analytic filter is PSD and only adds to the Hessian, by S^T (F+ - F) S; it keeps three
     // modes, as the frame Hessian has two negative eigenvalues among nine, four of them zero.
@@ -1748,6 +1754,43 @@ TEST(Filters, AreWhatTheirNamesSay) {
     EXPECT_LT(added[9], tolerance);
     EXPECT_GT(added[10], tolerance);
     EXPECT_GT(Difference(analytic, truth.Nearest()), 1e-6) << "not the nearest in x";
+  });
+}
+
+TEST(Filters, ThatShiftAddTheLeastThatTheirBoundAsksFor) {
+  ForRandomConfigurations(5, [](const Configuration<double>& c) {
+    Truth<Quad> truth = TruthOf<Quad>(c);
+    const Matrix<Quad>& h = truth.Hessian();
+    const Quad tolerance = Quad(1e-30) * FrobeniusNorm(h);
+    const Matrix<Quad> diagonal = FindFilter<Quad>("shift_diagonal")->define(truth);
+    EXPECT_LT(abs(SpectrumOf(diagonal).values[0]), tolerance);
+    const Matrix<Quad> dominant = FindFilter<Quad>("shift_gershgorin")->define(truth);
+    Quad least = FrobeniusNorm(dominant);
+    for (int i = 0; i < h.rows; ++i) {
+      Quad excess = 2 * dominant(i, i);
+      for (int j = 0; j < h.cols; ++j) excess -= abs(dominant(i, j));
+      least = std::min(least, excess);
+    }
+    EXPECT_LT(abs(least), tolerance);
+    for (const Matrix<Quad>& shifted : {diagonal, dominant}) {
+      const Matrix<Quad> added = shifted - h;
+      for (int i = 0; i < h.rows; ++i)
+        for (int j = 0; j < h.cols; ++j)
+          EXPECT_LT(abs(added(i, j) - (i == j ? added(0, 0) : Quad(0))), tolerance);
+    }
+  });
+}
+
+TEST(Filters, OfVertexBlocksClampEachVertexAlone) {
+  ForRandomConfigurations(5, [](const Configuration<double>& c) {
+    Truth<Quad> truth = TruthOf<Quad>(c);
+    const Matrix<Quad> blocks = FindFilter<Quad>("vertex_blocks")->define(truth);
+    Matrix<Quad> own = truth.Hessian();
+    for (int i = 0; i < own.rows; ++i)
+      for (int j = 0; j < own.cols; ++j)
+        if (i / 3 != j / 3) own(i, j) = 0;
+    // The spectrum of a block diagonal matrix is that of its blocks.
+    EXPECT_LT(Difference(blocks, NearestPsd(SpectrumOf(own))), 1e-28);
   });
 }
 
