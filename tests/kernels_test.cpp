@@ -70,8 +70,9 @@ void ExpectDefined(const std::string& distribution) {
   const auto* definition = reference::FindFilter<Quad>(F::kName);
   int checked = 0;
   ForDrawn<E>(distribution, 40, [&](const auto& x, const auto& p, auto& truth) {
-    EXPECT_LT(RelativeError(ToPacked(F::template Apply<E>(x, p)), definition->define(truth)), 1e-28)
-        << F::kName;
+    PackedSym<Quad, E::kDofs> f;
+    ForPacked(F::template Apply<E>(x, p), [&f](int k, const Quad& value) { f.a[k] = value; });
+    EXPECT_LT(RelativeError(f, definition->define(truth)), 1e-28) << F::kName;
     ++checked;
   });
   EXPECT_GE(checked, 20);
@@ -92,6 +93,17 @@ TEST(SignedVertexFace, HasTheReferencesCurvatureInFloat128) {
 
 TEST(SignedVertexFace, IsProjectedInFloat128) {
   for (const char* d : {"paper", "normal", "active"}) ExpectDefined<Nearest>(d);
+}
+
+template <class... F>
+void ExpectAllDefined() {
+  for (const char* d : {"paper", "active"}) (ExpectDefined<F>(d), ...);
+}
+TEST(SignedVertexFace, IsProjectedByEachEigensolverInFloat128) {
+  ExpectAllDefined<Ql12, Ql9, Ql5, Jacobi12, Jacobi9, Jacobi5>();
+}
+TEST(SignedVertexFace, IsShiftedAndCutIntoBlocksInFloat128) {
+  ExpectAllDefined<ShiftDiagonal, ShiftGershgorin, VertexBlocks>();
 }
 
 TEST(SignedVertexFace, HasTheReferencesValueAndGradientInFloat128) {
