@@ -74,14 +74,13 @@ inline void HandFusedAnalytic(const double* x, const double* p, double* out, lon
       const L psi1 = Select(idle, L(0.0), (k + k) * (l - eps));
       const L psi2 = Select(idle, L(0.0), k + k);
 
-      const L weights[4] = {L(1.0), -beta, (beta + gamma) - L(1.0), -gamma};
-      const L rows[2][4] = {{L(0.0), L(1.0), L(-1.0), L(0.0)},
-                            {L(0.0), -alpha, alpha - L(1.0), L(1.0)}};
-      L v[3][12], s[3][12];
-#pragma GCC unroll 12
-      for (int j = 0; j < 12; ++j) {
-        v[0][j] = weights[j / 3] * n[j % 3];
-        s[0][j] = psi2 * v[0][j];
+      // Over the edges e0, e1, e2: F = sum of 3x3 blocks, of which the vertices are sums.
+      const L of_w[2] = {-beta, -gamma};
+      L sum[3][3], along[2][3], c[3];  // c: of (e0, e0), (e0, e1), (e1, e1)
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+#pragma GCC unroll 3
+        for (int j = i; j < 3; ++j) sum[i][j] = (psi2 * n[i]) * n[j];
       }
 #pragma GCC unroll 2
       for (int m = 0; m < 2; ++m) {
@@ -90,10 +89,64 @@ inline void HandFusedAnalytic(const double* x, const double* p, double* out, lon
         const L tau = Select(r < L(0.0), q * h, larger);
         const L lambda = -(psi1 * half * (q * larger));
         const L kept = Select(lambda < L(0.0), L(0.0), lambda);
-#pragma GCC unroll 12
-        for (int j = 0; j < 12; ++j) {
-          v[1 + m][j] = MulAdd(tau * rows[m][j / 3], n[j % 3], weights[j / 3] * t[m][j % 3]);
-          s[1 + m][j] = kept * v[1 + m][j];
+        // Rows over e0 and e1: tau (1, 0) and tau (-alpha, 1).
+        const L row = m == 0 ? tau : tau * -alpha;
+        const L weight = kept * row, other = kept * tau;
+#pragma GCC unroll 3
+        for (int i = 0; i < 3; ++i) {
+#pragma GCC unroll 3
+          for (int j = i; j < 3; ++j) sum[i][j] = MulAdd(kept * t[m][i], t[m][j], sum[i][j]);
+          along[0][i] = m == 0 ? weight * t[m][i] : MulAdd(weight, t[m][i], along[0][i]);
+          if (m == 1) along[1][i] = other * t[m][i];
+        }
+        c[0] = m == 0 ? weight * row : MulAdd(weight, row, c[0]);
+        if (m == 1) c[1] = weight * tau, c[2] = other * tau;
+      }
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+#pragma GCC unroll 3
+        for (int j = 0; j < i; ++j) sum[i][j] = sum[j][i];
+      }
+      L block[3][3][3][3];
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+#pragma GCC unroll 3
+        for (int j = 0; j < 3; ++j) {
+          block[2][2][i][j] = sum[i][j];
+#pragma GCC unroll 2
+          for (int e = 0; e < 2; ++e) {
+            block[2][e][i][j] = MulAdd(along[e][i], n[j], of_w[e] * sum[i][j]);
+            block[e][2][j][i] = block[2][e][i][j];
+          }
+        }
+      }
+#pragma GCC unroll 2
+      for (int e = 0; e < 2; ++e) {
+#pragma GCC unroll 2
+        for (int f = e; f < 2; ++f) {
+#pragma GCC unroll 3
+          for (int j = 0; j < 3; ++j) {
+            const L rest = MulAdd(c[e + f], n[j], of_w[f] * along[e][j]);
+#pragma GCC unroll 3
+            for (int i = 0; i < 3; ++i) {
+              if (e == f && i > j) continue;
+              block[e][f][i][j] = MulAdd(n[i], rest, of_w[e] * block[f][2][j][i]);
+              block[f][e][j][i] = block[e][f][i][j];
+            }
+          }
+        }
+      }
+      // x0 = e2, x1 = e0, x2 = -(e0 + e1 + e2), x3 = e1.
+      constexpr int kEdge[4] = {2, 0, -1, 1};
+      L column[3][3][3];  // of x2, but for the sign
+#pragma GCC unroll 3
+      for (int e = 0; e < 3; ++e) {
+#pragma GCC unroll 3
+        for (int i = 0; i < 3; ++i) {
+#pragma GCC unroll 3
+          for (int j = 0; j < 3; ++j) {
+            column[e][i][j] = block[e][0][i][j] + block[e][1][i][j] + block[e][2][i][j];
+          }
         }
       }
       int at = 0;
@@ -101,7 +154,13 @@ inline void HandFusedAnalytic(const double* x, const double* p, double* out, lon
       for (int i = 0; i < 12; ++i) {
 #pragma GCC unroll 12
         for (int j = i; j < 12; ++j) {
-          MulAdd(s[2][i], v[2][j], MulAdd(s[1][i], v[1][j], s[0][i] * v[0][j])).Store(ot + at * kW);
+          const int e = kEdge[i / 3], f = kEdge[j / 3], row = i % 3, col = j % 3;
+          const L value = e >= 0 && f >= 0 ? block[e >= 0 ? e : 0][f >= 0 ? f : 0][row][col]
+                          : e >= 0         ? -column[e >= 0 ? e : 0][row][col]
+                          : f >= 0
+                              ? -column[f >= 0 ? f : 0][col][row]
+                              : column[0][row][col] + column[1][row][col] + column[2][row][col];
+          value.Store(ot + at * kW);
           ++at;
         }
       }

@@ -91,15 +91,15 @@ inline constexpr bool kIsModes = false;
 template <class T, int D, int K>
 inline constexpr bool kIsModes<Modes<T, D, K>, T, D> = true;
 template <class T, int D, class Stencil, int K, bool kTurning>
-inline constexpr bool kIsModes<FramedModes<T, Stencil, K, kTurning>, T, D> = 3 *
-                                                                            Stencil::kVertices == D;
+inline constexpr bool kIsModes<FramedModes<T, Stencil, K, kTurning>, T, D> =
+    3 * Stencil::kVertices == D;
 template <class R, class T, int D>
 inline constexpr bool kIsSymmetric = kIsModes<R, T, D>;
 template <class T, int D>
 inline constexpr bool kIsSymmetric<PackedSym<T, D>, T, D> = true;
 template <class T, int D, class Stencil, bool kTurning>
-inline constexpr bool kIsSymmetric<FramedSum<T, Stencil, kTurning>, T, D> = 3 *
-                                                                          Stencil::kVertices == D;
+inline constexpr bool kIsSymmetric<FramedSum<T, Stencil, kTurning>, T, D> =
+    3 * Stencil::kVertices == D;
 
 // An energy psi(x; p) of D degrees of freedom. Value is a cancellation-free form, since a line
 // search calls it. Outside the domain, and where inactive, all results are zero.
@@ -162,7 +162,9 @@ inline constexpr bool kStudied = false;
 // Whether a filter's matrix is also written in other forms than packed (outputs.hpp). A filter says
 // so itself: `static constexpr bool kOutputs = true`.
 template <class F>
-inline constexpr bool kHasOutputs = requires { requires F::kOutputs; };
+inline constexpr bool kHasOutputs = requires {
+  requires F::kOutputs;
+};
 
 // The same vectors with map(lambda).
 template <class AnyModes, class Map>
@@ -302,7 +304,7 @@ struct KernelRow {
 
 std::span<const EnergyRow> AllEnergies();
 std::span<const KernelRow> AllKernels();
-std::span<const KernelRow> AllOutputs();  // those whose output is not packed
+std::span<const KernelRow> AllOutputs();             // those whose output is not packed
 const KernelRow* FindKernel(std::string_view name);  // by its full name; null if there is none
 
 }  // namespace definite

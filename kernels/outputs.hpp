@@ -17,9 +17,8 @@ struct PackedOutput {
   template <class H, class Tile>
   static DEFINITE_INLINE void Write(const H& h, const Tile& tile) {
     ForPacked(
-        h, [&tile](int k, const auto& value) __attribute__((always_inline)) {
-          tile.Store(k, value);
-        });
+        h, [&tile](int k, const auto& value)
+               __attribute__((always_inline)) { tile.Store(k, value); });
   }
 };
 
@@ -83,9 +82,8 @@ struct BlockSumOutput {
   template <class H, class Tile>
   static DEFINITE_INLINE void Write(const H& h, const Tile& tile) {
     ForPacked(
-        h, [&tile](int k, const auto& value) __attribute__((always_inline)) {
-          tile.Store(k, tile.Load(k) + value);
-        });
+        h, [&tile](int k, const auto& value)
+               __attribute__((always_inline)) { tile.Store(k, tile.Load(k) + value); });
   }
 };
 
@@ -133,7 +131,7 @@ struct FrameOutput {
     E::FrameOf(x, p);
   }
   static DEFINITE_INLINE void WriteOf(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p,
-                                    const Tile& tile) {
+                                      const Tile& tile) {
     const auto f = E::FrameOf(x, p);
     tile.Store(0, f.l);
     int at = 1;

@@ -70,7 +70,8 @@ struct Pass {
     constexpr int kW = Layout::kLanes, kPasses = kW / Layout::kPass;
     const long tile = pass / kPasses, lane = pass % kPasses * Layout::kPass;
 #pragma GCC unroll 16
-    for (int i = 0; i < E::kDofs; ++i) x[i] = Layout::Load(all_x + (tile * E::kDofs + i) * kW + lane);
+    for (int i = 0; i < E::kDofs; ++i)
+      x[i] = Layout::Load(all_x + (tile * E::kDofs + i) * kW + lane);
 #pragma GCC unroll 16
     for (int i = 0; i < E::kParams; ++i) {
       p[i] = Layout::Load(all_p + (tile * E::kParams + i) * kW + lane);
@@ -156,8 +157,8 @@ Operations CountOperations(const double* x, const double* p) {
 // The modes that modes_of(x, p) gives, as numbers.
 template <class E, class ModesOf>
 ModeTable MakeModeTable(ModesOf) {
-  using ModesType =
-      std::remove_cvref_t<decltype(Stacked(ModesOf()(Vec<double, E::kDofs>(), Vec<double, E::kParams>())))>;
+  using ModesType = std::remove_cvref_t<decltype(Stacked(
+      ModesOf()(Vec<double, E::kDofs>(), Vec<double, E::kParams>())))>;
   constexpr int kCount = ModesType::kCount, kSize = sizeof(ModesType::v) / kCount / sizeof(double);
   return {kCount, kSize, [](const double* x, const double* p, double* out, long tiles) {
             ForTiles<E, ScalarTile, kCount*(1 + kSize)>(
@@ -165,7 +166,8 @@ ModeTable MakeModeTable(ModesOf) {
                   const ModesType modes = Stacked(ModesOf()(xs, ps));
                   for (int m = 0; m < kCount; ++m) {
                     tile.Store(m * (1 + kSize), modes.lambda[m]);
-                    for (int i = 0; i < kSize; ++i) tile.Store(m * (1 + kSize) + 1 + i, modes.v[m][i]);
+                    for (int i = 0; i < kSize; ++i)
+                      tile.Store(m * (1 + kSize) + 1 + i, modes.v[m][i]);
                   }
                 });
           }};
@@ -203,9 +205,9 @@ EnergyRow MakeEnergy() {
   if constexpr (requires { E::kMirror; }) row.mirror = E::kMirror;
   row.dimension = Stencil::kDimension;
   row.value = [](const double* x, const double* p, double* out, long tiles) {
-    ForTiles<E, ScalarTile, 1>(x, p, out, tiles, [](const auto& xs, const auto& ps, const auto& tile) {
-      tile.Store(0, E::Value(xs, ps));
-    });
+    ForTiles<E, ScalarTile, 1>(
+        x, p, out, tiles,
+        [](const auto& xs, const auto& ps, const auto& tile) { tile.Store(0, E::Value(xs, ps)); });
   };
   row.gradient = [](const double* x, const double* p, double* out, long tiles) {
     ForTiles<E, ScalarTile, E::kDofs>(x, p, out, tiles,
@@ -215,12 +217,13 @@ EnergyRow MakeEnergy() {
                                       });
   };
   row.classify = [](const double* x, const double* p, double* out, long tiles) {
-    ForTiles<E, ScalarTile, 3>(x, p, out, tiles, [](const auto& xs, const auto& ps, const auto& tile) {
-      const Classification<double> c = E::Classify(xs, ps);
-      tile.Store(0, c.active);
-      tile.Store(1, c.in_domain);
-      tile.Store(2, c.region);
-    });
+    ForTiles<E, ScalarTile, 3>(x, p, out, tiles,
+                               [](const auto& xs, const auto& ps, const auto& tile) {
+                                 const Classification<double> c = E::Classify(xs, ps);
+                                 tile.Store(0, c.active);
+                                 tile.Store(1, c.in_domain);
+                                 tile.Store(2, c.region);
+                               });
   };
   if constexpr (OffersSet<E, double, Set::kSplit>) {
     row.split = MakeModeTable<E>([](const auto& x, const auto& p) {
@@ -262,9 +265,11 @@ template <class E, class F, class Tile, class Output>
 void AppendOutput(std::vector<KernelRow>& rows) {
   using T = typename Tile::Value;
   using H = decltype(F::template Apply<E>(Vec<T, E::kDofs>(), Vec<T, E::kParams>()));
-  if constexpr (requires(Vec<T, E::kDofs> x, Vec<T, E::kParams> p, OutputTile<Tile> tile) {
-                  Output::template WriteOf<F>(x, p, tile);
-                } || requires(const H& h, OutputTile<Tile> tile) { Output::Write(h, tile); }) {
+  if constexpr (
+      requires(Vec<T, E::kDofs> x, Vec<T, E::kParams> p, OutputTile<Tile> tile) {
+        Output::template WriteOf<F>(x, p, tile);
+      } ||
+      requires(const H& h, OutputTile<Tile> tile) { Output::Write(h, tile); }) {
     rows.push_back(MakeKernel<E, F, Tile, Output>());
   }
 }

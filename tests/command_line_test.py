@@ -240,10 +240,10 @@ class BadInput(unittest.TestCase):
 
     def test_an_unknown_subcommand_is_rejected_with_the_known_ones(self):
         self.assert_rejected(["swep"], "'swep'",
-                             "expected a subcommand: sweep, replay, list, reproduce, verify")
+                             "expected a subcommand: sweep, speed, replay, list, reproduce, verify")
 
     def test_no_subcommand_is_rejected_with_the_known_ones(self):
-        self.assert_rejected([], "expected a subcommand: sweep, replay, list, reproduce, verify")
+        self.assert_rejected([], "expected a subcommand: sweep, speed, replay, list, reproduce, verify")
 
     def test_an_unknown_option_is_rejected(self):
         for command in ("sweep", "list", "replay"):

@@ -113,7 +113,8 @@ TEST_P(BlockSum, AddsUpTheMatricesOfACall) {
       for (int pair = lane; pair < kPairs; pair += row_.lanes) {
         expected += packed_[static_cast<std::size_t>(pair * size_ + k)];
       }
-      EXPECT_EQ(sums[static_cast<std::size_t>(k * row_.lanes + lane)], expected) << lane << " " << k;
+      EXPECT_EQ(sums[static_cast<std::size_t>(k * row_.lanes + lane)], expected)
+          << lane << " " << k;
     }
   }
 }

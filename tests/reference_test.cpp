@@ -1186,6 +1186,8 @@ TEST(EdgeEdge, UnsignedIsVertexEdgeOrVertexVertexAtEnds) {
     Truth<Quad> truth = TruthOf<Quad>(name, c);
     EXPECT_LT(abs(truth.Value() - small.Value()), Quad(1e-29) * small.Value());
     for (const Filter<Quad>& filter : AllFilters<Quad>()) {
+      // A multiple of the identity reaches the other vertices too.
+      if (filter.name.starts_with("shift_")) continue;
       const Matrix<Quad> whole = filter.define(small);
       Matrix<Quad> expected(12, 12);
       for (int i = 0; i < n; ++i)
@@ -1734,9 +1736,9 @@ TEST(Filters, AreWhatTheirNamesSay) {
     EXPECT_EQ(define("gauss_newton").entries, truth.Curvature().entries);
     EXPECT_EQ(define("numeric").entries, truth.Nearest().entries);
     EXPECT_EQ(define("analytic").entries, define("analytic_printed").entries);
-    for (const char* name : {"numeric_negatives", "numeric_reduced", "numeric_lapack_d",
-                             "numeric_lapack_r", "numeric_float", "numeric_probed", "ql_12", "ql_5",
-                             "jacobi_12", "jacobi_5"})
+    for (const char* name :
+         {"numeric_negatives", "numeric_reduced", "numeric_lapack_d", "numeric_lapack_r",
+          "numeric_float", "numeric_probed", "ql_12", "ql_5", "jacobi_12", "jacobi_5"})
       EXPECT_EQ(define(name).entries, truth.Nearest().entries) << name;
     for (const char* name : {"ql_9", "jacobi_9"})
       EXPECT_EQ(define(name).entries, define("analytic").entries) << name;

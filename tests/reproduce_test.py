@@ -3,6 +3,7 @@
 import copy
 import json
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -363,8 +364,10 @@ class Published(unittest.TestCase):
     def test_the_accuracy_of_every_collision_energy_is_published(self):
         names = subprocess.run([PROGRAM, "list", "--kernels", "collision/*/f64"],
                                capture_output=True, text=True, check=True).stdout.split()
+        # Not the baselines that a few energies have, and not one filter twice.
         names = {name for name in names
-                 if not name.removesuffix("/f64").endswith(("_frame", "_printed"))}
+                 if not re.search(r"_frame/|_printed/|/(numeric|ql|jacobi|shift)_|/vertex_blocks/",
+                                  name)}
         result = json.loads((ROOT / f"results/published/{ACCURACY}.json").read_text())
         for distribution in ("active", "normal", "paper"):
             self.assertEqual({row["kernel"] for row in result["rows"]

@@ -12,13 +12,15 @@ namespace definite {
 void AddList(CLI::App& app, int&) {
   struct Options {
     std::vector<std::string> kernels = {"*"};
-    bool long_form = false, promises = false;
+    bool long_form = false, promises = false, outputs = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("list", "Prints the full name of each row, one a line");
   CLI::Option* kernels = AddKernelsOption(*command, options->kernels);
   CLI::Option* long_form =
       command->add_flag("--long", options->long_form, "Sources and parameters too");
+  command->add_flag("--outputs", options->outputs,
+                    "Rows whose output is not a packed matrix too: definite speed times them");
   command
       ->add_flag("--promises", options->promises,
                  "Instead what filters promise, and their exemptions")
@@ -30,7 +32,8 @@ void AddList(CLI::App& app, int&) {
       fmt::print("{}", PromiseTable());
       return;
     }
-    for (const KernelRow* row : RowsMatching(options->kernels, Outputs::kAll)) {
+    for (const KernelRow* row :
+         RowsMatching(options->kernels, options->outputs ? Outputs::kAll : Outputs::kPacked)) {
       fmt::print("{}\n", row->name);
       if (!options->long_form) continue;
       fmt::print("  energy  {}\n  filter  {}\n", row->energy->source, row->source);

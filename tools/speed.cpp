@@ -78,7 +78,8 @@ void AddSpeed(CLI::App& app, int& exit_code) {
       ->type_name("LEVEL")
       ->allow_extra_args(false);
   command
-      ->add_option("--threads", options->threads, "Threads, may be given several times (default 1, 2)")
+      ->add_option("--threads", options->threads,
+                   "Threads, may be given several times (default 1, 2)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024))
       ->allow_extra_args(false);
@@ -93,7 +94,8 @@ void AddSpeed(CLI::App& app, int& exit_code) {
       "Thread CPU time on one thread, wall time on more.\n\n"
       "Examples:\n"
       "  definite speed --ring L1 --threads 1\n"
-      "  definite speed --kernels '*/signed/quadratic/nearest/*' --kernels '*/quadratic/numeric/f64'\n"
+      "  definite speed --kernels '*/signed/quadratic/nearest/*' --kernels "
+      "'*/quadratic/numeric/f64'\n"
       "  definite speed --distribution paper --json speed.json");
   command->callback([options, &exit_code] { exit_code = RunSpeedCommand(*options); });
 }

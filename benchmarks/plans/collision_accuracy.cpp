@@ -33,11 +33,11 @@ std::size_t RankOf(std::string_view name, const std::array<std::string_view, kCo
 }
 
 // A filter that is another one, computed in another way: through the frame, as printed, or by
-// another eigensolver.
+// another eigensolver; or a baseline that only a few energies have.
 bool IsDuplicate(std::string_view filter) {
   return filter.ends_with("_frame") || filter.ends_with("_printed") ||
          filter.starts_with("numeric_") || filter.starts_with("ql_") ||
-         filter.starts_with("jacobi_");
+         filter.starts_with("jacobi_") || filter.starts_with("shift_") || filter == "vertex_blocks";
 }
 
 std::vector<PlannedSweep> Sweeps() {

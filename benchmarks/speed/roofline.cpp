@@ -108,8 +108,8 @@ Roofline MeasureRoofline() {
   Roofline roofline;
   roofline.arithmetic = ArithmeticRate();
   const L two(2.0);
-  roofline.divisions = RateOf<8>(
-      [&](int, const L& v) __attribute__((always_inline)) { return two / v; });
+  roofline.divisions =
+      RateOf<8>([&](int, const L& v) __attribute__((always_inline)) { return two / v; });
   roofline.roots =
       RateOf<8>([&](int, const L& v) __attribute__((always_inline)) { return Sqrt(v); });
   for (Level level : {Level::kL1, Level::kL2, Level::kMemory}) {

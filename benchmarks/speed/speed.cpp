@@ -17,9 +17,9 @@ namespace definite {
 
 namespace {
 
-constexpr std::int64_t kInputs = 4096;    // configurations of a thread, in L2
-constexpr double kShortest = 1e-3;        // seconds of one timing
-constexpr std::int64_t kCounted = 1024;   // configurations whose operations are counted
+constexpr std::int64_t kInputs = 4096;   // configurations of a thread, in L2
+constexpr double kShortest = 1e-3;       // seconds of one timing
+constexpr std::int64_t kCounted = 1024;  // configurations whose operations are counted
 
 // Outputs go round in the ring and on from where the row before left off, so that one larger than a
 // cache is always written from outside it.
@@ -141,7 +141,8 @@ void TimeRows(const SpeedPlan& plan, std::vector<SpeedRow>& rows, SpeedResult& r
   const SpeedRow& any = rows.front();
   std::vector<std::unique_ptr<Workplace>> places;
   for (int t = 0; t < any.threads; ++t) {
-    places.push_back(std::make_unique<Workplace>(Workplace{Batch(*any.row->energy), Ring(any.level)}));
+    places.push_back(
+        std::make_unique<Workplace>(Workplace{Batch(*any.row->energy), Ring(any.level)}));
     places.back()->batch.Draw(*plan.distribution, plan.seed,
                               static_cast<std::uint64_t>(t * kInputs), kInputs);
   }

@@ -28,8 +28,8 @@ struct SpeedPlan {
 
 // The least time that a configuration can take on one core.
 struct Floor {
-  Operations operations;     // of all that were counted
-  std::int64_t counted = 0;  // configurations
+  Operations operations;                            // of all that were counted
+  std::int64_t counted = 0;                         // configurations
   double arithmetic = 0, division = 0, stores = 0;  // seconds that each would take alone
 
   double Seconds() const;

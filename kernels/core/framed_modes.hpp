@@ -31,9 +31,9 @@ template <class T, class FrameStencil, bool kTurning>
 struct FramedSum {
   using Stencil = FrameStencil;
   static constexpr int kEdges = Stencil::kEdges;
-  T s[3][3];              // sum lambda t t^T
-  Vec3<T> a[kEdges];      // sum lambda r_e t; of the last edge zero, and not set
-  T c[kEdges][kEdges];    // sum lambda r_e r_f for e <= f, likewise
+  T s[3][3];            // sum lambda t t^T
+  Vec3<T> a[kEdges];    // sum lambda r_e t; of the last edge zero, and not set
+  T c[kEdges][kEdges];  // sum lambda r_e r_f for e <= f, likewise
   Vec<T, kEdges> w;
   Vec3<T> n;
 };
@@ -160,7 +160,8 @@ DEFINITE_INLINE FramedSum<T, Stencil, kTurning> SumOf(
     for (int i = 0; i < 3; ++i) {
 #pragma GCC unroll 3
       for (int j = i; j < 3; ++j) {
-        sum.s[i][j] = m == 0 ? scaled[i] * modes.t[m][j] : MulAdd(scaled[i], modes.t[m][j], sum.s[i][j]);
+        sum.s[i][j] =
+            m == 0 ? scaled[i] * modes.t[m][j] : MulAdd(scaled[i], modes.t[m][j], sum.s[i][j]);
       }
     }
     if (!modes.turns[m]) continue;
@@ -232,7 +233,8 @@ DEFINITE_INLINE void ForPacked(const FramedSum<T, Stencil, true>& sum, Store sto
     for (int f = e; f < kLast; ++f) {
       Vec3<T> along_n;
 #pragma GCC unroll 3
-      for (int j = 0; j < 3; ++j) along_n[j] = MulAdd(sum.c[e][f], sum.n[j], sum.w[f] * sum.a[e][j]);
+      for (int j = 0; j < 3; ++j)
+        along_n[j] = MulAdd(sum.c[e][f], sum.n[j], sum.w[f] * sum.a[e][j]);
 #pragma GCC unroll 3
       for (int i = 0; i < 3; ++i) {
 #pragma GCC unroll 3
@@ -272,8 +274,9 @@ DEFINITE_INLINE void ForPacked(const FramedSum<T, Stencil, true>& sum, Store sto
 #pragma GCC unroll 3
         for (int j = u == v ? i : 0; j < 3; ++j) {
           const T entry = internal::SignedSum<kEdges, T>(
-              Stencil::kInEdges[u],
-              [&](int e) __attribute__((always_inline)) { return column[e][v][i][j]; });
+              Stencil::kInEdges[u], [&](int e) __attribute__((always_inline)) {
+                return column[e][v][i][j];
+              });
           store(internal::PackedIndex(3 * u + i, 3 * v + j, 3 * kVertices), minus ? -entry : entry);
         }
       }

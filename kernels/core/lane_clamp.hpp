@@ -71,9 +71,9 @@ PackedSym<T, D> ToPackedWithoutMinusZero(const Modes<T, D, K>& modes) {
 }
 
 // Of the full matrix.
-template <class Solver, class T, int D, int K>
-PackedSym<T, D> ClampFull(const Modes<T, D, K>& modes) {
-  return ToPackedWithoutMinusZero(PositivePart<Solver>(ToPacked(modes)));
+template <class Solver, class T, int D>
+PackedSym<T, D> ClampFull(const PackedSym<T, D>& h) {
+  return ToPackedWithoutMinusZero(PositivePart<Solver>(h));
 }
 
 // In the frame coordinates, whose map is a few rows over the vertices times the 3x3 identity.

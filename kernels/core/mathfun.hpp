@@ -42,9 +42,7 @@ struct ConstantRoot {
 };
 template <class S, int W>
 struct ConstantRoot<Lanes<S, W>> {
-  static DEFINITE_INLINE Lanes<S, W> Of(int n) {
-    return Lanes<S, W>(std::sqrt(static_cast<S>(n)));
-  }
+  static DEFINITE_INLINE Lanes<S, W> Of(int n) { return Lanes<S, W>(std::sqrt(static_cast<S>(n))); }
 };
 
 DEFINITE_INLINE double Abs(double a) { return std::fabs(a); }

@@ -172,7 +172,8 @@ struct Collision {
   using Arguments = PenaltyParameters<Penalty, 0>;
   template <class T>
   using Projection =
-      CollisionProjection<Stencil, Length::kTangents, decltype(Length::FrameOf(Vec<T, kDofs>(), T()))::kFreeSlots, T>;
+      CollisionProjection<Stencil, Length::kTangents,
+                          decltype(Length::FrameOf(Vec<T, kDofs>(), T()))::kFreeSlots, T>;
 
   // A length whose frame set is not its pairs of free modes.
   static constexpr bool kSplits = requires(CollisionFrame<double, 4, 2> f) {

@@ -18,7 +18,7 @@ struct Jacobi12 {
   template <class E, class T>
   requires kStudied<E>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    return ClampFull<ByJacobi>(None::Apply<E>(x, p));
+    return ClampFull<ByJacobi>(ToPacked(None::Apply<E>(x, p)));
   }
 };
 

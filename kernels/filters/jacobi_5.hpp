@@ -18,7 +18,7 @@ struct Jacobi5 {
   template <class E, class T>
   requires kStudied<E>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    return ClampInRange<ByJacobi>(E::template HessianModes<Set::kSplit, Part::kAll>(x, p));
+    return ClampInRange<ByJacobi>(Stacked(E::template HessianModes<Set::kSplit, Part::kAll>(x, p)));
   }
 };
 

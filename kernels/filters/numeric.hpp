@@ -18,7 +18,7 @@ struct Numeric {
   };
 
   template <class E, class T>
-    requires std::same_as<T, double>
+  requires std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     return MapEigenvalues(ToPacked(None::Apply<E>(x, p)), ClampToPsd);
   }

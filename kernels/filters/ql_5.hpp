@@ -18,7 +18,7 @@ struct Ql5 {
   template <class E, class T>
   requires kStudied<E>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    return ClampInRange<ByQl>(E::template HessianModes<Set::kSplit, Part::kAll>(x, p));
+    return ClampInRange<ByQl>(Stacked(E::template HessianModes<Set::kSplit, Part::kAll>(x, p)));
   }
 };
 

@@ -20,7 +20,7 @@ struct ShiftDiagonal {
   template <class E, class T>
   requires kStudied<E>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    const auto reduced = Reduce(E::template HessianModes<Set::kSplit, Part::kAll>(x, p));
+    const auto reduced = Reduce(Stacked(E::template HessianModes<Set::kSplit, Part::kAll>(x, p)));
     const auto e = SolveInUnits<ByQl>(reduced.h);
     T shift = T(0.0);
     for (const T& value : e.values) shift = Max(-value, shift);

@@ -238,9 +238,9 @@ auto ToFrameTerm(const CollisionFrame<T, kVertices, kSlots>& f,
   return term;
 }
 
-// The free tangents of a frame and their rows over lengths, rows[i] / len_i, turned so that the rows
-// are orthogonal: sum_i rows[i] t[i]^T / len_i = sum_k sigma[k] v[k] t[k]^T, the singular value
-// decomposition. sigma descends.
+// The free tangents of a frame and their rows over lengths, rows[i] / len_i, turned so that the
+// rows are orthogonal: sum_i rows[i] t[i]^T / len_i = sum_k sigma[k] v[k] t[k]^T, the singular
+// value decomposition. sigma descends.
 template <class T, int kVertices, int kSlots>
 struct TurnedRows {
   Vec<T, kVertices> v[kSlots];  // unit rows; zero where the tangent is fixed
@@ -273,7 +273,7 @@ requires(kSlots > 0) DEFINITE_INLINE TurnedRows<T, kVertices, kSlots> TurnedRows
     const T square = Select(larger2 <= T(0.0), T(1.0), larger2);
     const T inverse_larger = T(1.0) / Sqrt(square);
     const T area = ConstantRoot<T>::Of(kGramDeterminant) * (inverse[0] * inverse[1]);
-    turned.sigma[0] = square * inverse_larger;
+    turned.sigma[0] = larger2 * inverse_larger;
     turned.sigma[1] = area * inverse_larger;  // from the determinant, without cancellation
     // (c, s) belongs to the larger one.
     const T along = Abs(half) + root;

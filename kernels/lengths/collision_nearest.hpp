@@ -137,8 +137,8 @@ class CollisionProjection {
 
   CollisionProjection() = default;
   DEFINITE_INLINE CollisionProjection(const CollisionFrame<T, kVertices, kSlots>& f,
-                                      const TurnedRows<T, kVertices, kSlots>& turned,
-                                      const T& psi1, const T& psi2);
+                                      const TurnedRows<T, kVertices, kSlots>& turned, const T& psi1,
+                                      const T& psi2);
 
   // All but the last step with half the digits, which is all that it is good for.
   DEFINITE_INLINE void Refine(int step) {
@@ -192,9 +192,9 @@ DEFINITE_INLINE CollisionProjection<FrameStencil, kTangents, kSlots, T>::Collisi
   const T width = width2 * inverse_width;
   // The larger of the entries, as a power of two.
   const T slope0 = psi1 * turned.sigma[0];
-  const T inverse_unit = InversePowerOfTwo(
-      Max(Max(Abs(slope0 * width), Abs(slope0 * (f.l * turned.sigma[0]))),
-          Max(psi2 * width2, T(0x1p-1000))));
+  const T inverse_unit =
+      InversePowerOfTwo(Max(Max(Abs(slope0 * width), Abs(slope0 * (f.l * turned.sigma[0]))),
+                            Max(psi2 * width2, T(0x1p-1000))));
   unit_ = T(0.5) * InversePowerOfTwo(inverse_unit);
   h_.curvature = Max(psi2 * inverse_unit, T(kLeastCurvature));
   auto& d = h_.equation.pole;

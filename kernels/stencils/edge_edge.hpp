@@ -32,8 +32,8 @@ struct EdgeEdge {
   // |Row0|^2 |Row1|^2 - (Row0 . Row1)^2, whatever alpha.
   static constexpr int kGramDeterminant = 4;
 
-  // What no choice of Row0 and Row1 takes from Row2: its part along the one row that sums to zero and
-  // is orthogonal to both.
+  // What no choice of Row0 and Row1 takes from Row2: its part along the one row that sums to zero
+  // and is orthogonal to both.
   template <class T>
   static DEFINITE_INLINE Vec<T, 4> RestRow() {
     return {T(-0.5), T(-0.5), T(0.5), T(0.5)};

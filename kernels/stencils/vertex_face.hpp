@@ -33,8 +33,8 @@ struct VertexFace {
   // |Row0|^2 |Row1|^2 - (Row0 . Row1)^2, whatever alpha.
   static constexpr int kGramDeterminant = 3;
 
-  // What no choice of Row0 and Row1 takes from Row2: its part along the one row that sums to zero and
-  // is orthogonal to both.
+  // What no choice of Row0 and Row1 takes from Row2: its part along the one row that sums to zero
+  // and is orthogonal to both.
   template <class T>
   static DEFINITE_INLINE Vec<T, 4> RestRow() {
     const T third = T(-1.0) / T(3.0);

@@ -13,7 +13,8 @@ struct VertexBlocks {
   template <class T>
   static Matrix<T> Define(Truth<T>& truth) {
     const Matrix<T>& h = truth.Hessian();
-    Matrix<T> blocks(h.rows, h.cols);
+    Matrix<T> blocks = h;
+    for (T& entry : blocks.entries) entry *= 0;  // NaN stays
     for (int first = 0; first < h.rows; first += 3) {
       Matrix<T> block(3, 3);
       for (int i = 0; i < 3; ++i)
