@@ -593,6 +593,50 @@ class Sweeps(unittest.TestCase):
             self.assertEqual(found[name], found[name.removesuffix("x8")])
 
 
+class Speed(unittest.TestCase):
+    WORDS = ("speed", "--kernels", ENERGY + "/analytic/f64x8*", "--kernels", ENERGY + "/numeric/f64",
+             "--kernels", ENERGY + "/gauss_newton/f64", "--ring", "L1", "--rounds", "3")
+
+    def test_its_json_has_each_row_with_its_ratios_and_floor(self):
+        done = run(*self.WORDS, "--threads", "1", "--threads", "2", "--json", "-")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = json.loads(done.stdout)
+        VALIDATOR.validate(result)
+        rows = result["speed"]["rows"]
+        listed = [name for name in row_names("--outputs", "--kernels", ENERGY + "/*")
+                  if name.startswith(ENERGY + "/analytic/f64x8")]
+        self.assertGreater(len(listed), 3)
+        for threads in (1, 2):
+            timed = [row for row in rows if row["threads"] == threads]
+            self.assertEqual({row["kernel"] for row in timed},
+                             {*listed, ENERGY + "/numeric/f64", ENERGY + "/gauss_newton/f64"})
+            for row in timed:
+                self.assertEqual(row["rounds"], 3)
+                self.assertEqual(row["floor"] is None, row["kernel"].endswith("/f64"), row)
+                self.assertIsNotNone(row["ratio_to"]["numeric"])
+                if row["kernel"].endswith("/numeric/f64"):
+                    self.assertEqual(row["ratio_to"]["numeric"]["median"], 1)
+        for row in rows:
+            if row["floor"]:
+                floor = row["floor"]
+                self.assertEqual(floor["ns"], max(floor[part + "_ns"] for part in (
+                    "arithmetic", "division", "stores")))
+                self.assertEqual(floor["ns"], floor[floor["binds"] + "_ns"])
+
+    def test_its_table_fits_100_columns(self):
+        done = run(*self.WORDS, "--threads", "1")
+        self.assertIn("analytic/f64x8/applied", done.stdout)
+        self.assertEqual([line for line in done.stdout.splitlines()
+                          if len(line) > 100 or line != line.rstrip()], [])
+
+    def test_bad_words_are_rejected_by_name(self):
+        for words, said in ((("--ring", "L3"), "--ring 'L3': expected L1, L2 or memory"),
+                            (("--threads", "0"), "--threads '0'"), (("--rounds", "x"), "--rounds 'x'")):
+            done = run("speed", *words)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(said, done.stderr)
+
+
 class Set(unittest.TestCase):
     """Parameters set for a whole sweep."""
 

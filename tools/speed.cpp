@@ -18,8 +18,8 @@ struct Options {
   std::vector<std::string> kernels = {"collision/*/signed/quadratic/*"};
   std::string distribution = "active", seed = "42";
   std::vector<std::string> rings = {"L1", "L2", "memory"};
-  std::vector<int> threads = {1, 2};
-  int rounds = 15;
+  std::vector<std::string> threads = {"1", "2"};
+  std::string rounds = "15";
   std::optional<std::string> json;
 };
 
@@ -37,8 +37,11 @@ int RunSpeedCommand(const Options& options) {
   plan.seed = ParseCount("--seed", options.seed, 0);
   plan.levels.clear();
   for (const std::string& ring : options.rings) plan.levels.push_back(LevelNamed(ring));
-  plan.threads = options.threads;
-  plan.rounds = options.rounds;
+  plan.threads.clear();
+  for (const std::string& threads : options.threads) {
+    plan.threads.push_back(static_cast<int>(ParseCount("--threads", threads, 1, 1024)));
+  }
+  plan.rounds = static_cast<int>(ParseCount("--rounds", options.rounds, 1, 10000));
   std::erase_if(plan.rows, [&](const KernelRow* row) {
     return !plan.distribution->supports(row->energy->stencil);
   });
@@ -70,22 +73,26 @@ void AddSpeed(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "speed", "Times rows against each other, with the floor that the machine sets");
-  AddKernelsOption(*command, options->kernels);
+  AddKernelsOption(*command, options->kernels)
+      ->description(
+          "Rows with such a name, * crosses / (default: those of the signed quadratic\n"
+          "energies, whatever their output; may be repeated)");
   AddDistributionOption(*command, options->distribution);
   AddSeedOption(*command, options->seed);
+  const auto add_several = [command](const char* name, std::vector<std::string>& values,
+                                     const char* help, const char* type) {
+    command->add_option(name, values, help)
+        ->type_name(type)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  };
+  add_several("--ring", options->rings,
+              "Where the outputs go: L1, L2, memory (default: all three; may be repeated)",
+              "LEVEL");
+  add_several("--threads", options->threads, "Threads (default: 1, then 2; may be repeated)", "N");
   command
-      ->add_option("--ring", options->rings, "Where the outputs go: L1, L2, memory (default all)")
-      ->type_name("LEVEL")
-      ->allow_extra_args(false);
-  command
-      ->add_option("--threads", options->threads,
-                   "Threads, may be given several times (default 1, 2)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024))
-      ->allow_extra_args(false);
-  command->add_option("--rounds", options->rounds, "Rounds, each in an order of its own")
-      ->type_name("N")
-      ->check(CLI::Range(1, 10000));
+      ->add_option("--rounds", options->rounds, "Rounds, each in an order of its own (default: 15)")
+      ->type_name("N");
   AddJsonOption(*command, options->json);
   command->footer(
       "The rows of an energy are timed in turn, in random order, on the same configurations. A\n"

@@ -61,7 +61,9 @@ Json ToJson(const SpeedResult& result, const std::vector<std::string>& command) 
   const Roofline& r = result.roofline;
   Json& speed = json["speed"];
   speed["distribution"] = result.plan.distribution->name;
-  speed["roofline"] = {{"arithmetic_per_second", r.arithmetic},
+  speed["roofline"] = {{"lanes", kNativeLanes},
+                       {"fused_per_second", r.fused},
+                       {"arithmetic_per_second", r.arithmetic},
                        {"divisions_per_second", r.divisions},
                        {"roots_per_second", r.roots},
                        {"store_bytes_per_second",
@@ -88,11 +90,11 @@ Json ToJson(const SpeedResult& result, const std::vector<std::string>& command) 
 std::string ToTable(const SpeedResult& result) {
   const Roofline& r = result.roofline;
   std::string table = fmt::format(
-      "{} lanes; a core does {:.2f} G vector operations a second ({:.0f} GFlop/s), {:.2f} G\n"
-      "divisions, {:.2f} G square roots, and stores {:.0f} GB/s in L1, {:.0f} in L2, {:.0f} in "
-      "memory\n",
-      kNativeLanes, r.arithmetic * 1e-9, 2e-9 * kNativeLanes * r.arithmetic, r.divisions * 1e-9,
-      r.roots * 1e-9, r.Stores(Level::kL1) * 1e-9, r.Stores(Level::kL2) * 1e-9,
+      "{} lanes; a core does {:.2f} G vector operations a second, fused multiply-adds {:.2f} G\n"
+      "({:.0f} GFlop/s), divisions {:.2f} G, square roots {:.2f} G; it stores {:.0f} GB/s in L1, "
+      "{:.0f} in L2,\n{:.0f} in memory\n",
+      kNativeLanes, r.arithmetic * 1e-9, r.fused * 1e-9, 2e-9 * kNativeLanes * r.fused,
+      r.divisions * 1e-9, r.roots * 1e-9, r.Stores(Level::kL1) * 1e-9, r.Stores(Level::kL2) * 1e-9,
       r.Stores(Level::kMemory) * 1e-9);
   const SpeedRow* last = nullptr;
   for (const SpeedRow& row : result.rows) {
@@ -101,20 +103,20 @@ std::string ToTable(const SpeedResult& result) {
       table += fmt::format("\n{}, {}, outputs in {}, {} thread{}\n", row.row->energy->name,
                            result.plan.distribution->name, LevelName(row.level), row.threads,
                            row.threads == 1 ? "" : "s");
-      table += fmt::format("{:<34}{:>8}{:>18}{:>9}{:>7}{:>8}{:>7}  {}\n", "", "ns", "95 %",
+      table += fmt::format("{:<30}{:>8}{:>18}{:>9}{:>7}{:>8}{:>7}  {}\n", "", "ns", "95 %",
                            "numeric/", "G-N/", "floor", "x", "binds");
     }
     last = &row;
     const auto time = EstimateMedian(row.seconds);
     const std::string name(row.row->name.substr(row.row->energy->name.size() + 1));
     table += fmt::format(
-        "{:<34}{:>8}{:>18}{:>9}{:>7}{:>8}{:>7}  {}\n", name,
+        "{:<30}{:>8}{:>18}{:>9}{:>7}{:>8}{:>7}{}\n", name,
         time ? fmt::format("{:.1f}", time->median * 1e9) : "-",
         time ? fmt::format("{:.1f} - {:.1f}", time->low * 1e9, time->high * 1e9) : "",
         Number(row.to_numeric), Number(row.to_gauss_newton),
         row.floor ? fmt::format("{:.1f}", row.floor->Seconds() * 1e9) : "-",
         row.floor && time ? fmt::format("{:.1f}", time->median / row.floor->Seconds()) : "-",
-        row.floor ? row.floor->Binds() : "");
+        row.floor ? fmt::format("  {}", row.floor->Binds()) : "");
   }
   return table;
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
+#include <utility>
 
 #include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/clock.hpp"
@@ -37,36 +37,36 @@ double BestRate(double amount, Work work) {
 
 DEFINITE_INLINE void KeepInRegister(L& value) { asm volatile("" : "+v"(value.lane)); }
 
-// kChains independent chains of step(value), long enough to hide the latency of each.
-template <int kChains, class Step>
-double RateOf(Step step) {
+// Independent chains of step(c, value), enough to hide the latency of each. Written out by the
+// template: an array under a loop stays in memory, and its stores would be what is timed.
+template <class Step, int... c>
+double RateOf(Step step, std::integer_sequence<int, c...>) {
   constexpr int kSteps = 64;
-  return BestRate(kSteps * kChains, [step](std::int64_t repetitions) {
-    L value[kChains];
-#pragma GCC unroll 16
-    for (int c = 0; c < kChains; ++c) value[c] = L(1.0 + c);
+  return BestRate(kSteps * sizeof...(c), [step](std::int64_t repetitions) {
+    L value[] = {L(1.0 + c)...};
     for (std::int64_t r = 0; r < repetitions; ++r) {
       for (int s = 0; s < kSteps; ++s) {
-#pragma GCC unroll 16
-        for (int c = 0; c < kChains; ++c) {
-          value[c] = step(c, value[c]);
-          KeepInRegister(value[c]);
-        }
+        ((value[c] = step(c, value[c]), KeepInRegister(value[c])), ...);
       }
     }
   });
 }
+template <int kChains, class Step>
+double RateOf(Step step) {
+  return RateOf(step, std::make_integer_sequence<int, kChains>());
+}
 
-double ArithmeticRate() {
-  // Some machines have units of their own for additions: every second chain adds.
+void MeasureArithmetic(Roofline& roofline) {
   const L factor(0.999), term(0.001);
-  const auto fused = [&](int, const L& v) __attribute__((always_inline)) {
+  const auto fused = [=](int, const L& v) __attribute__((always_inline)) {
     return MulAdd(v, factor, term);
   };
-  const auto mixed = [&](int c, const L& v) __attribute__((always_inline)) {
+  // Some machines have units of their own for additions: every second chain adds.
+  const auto mixed = [=](int c, const L& v) __attribute__((always_inline)) {
     return c % 2 == 0 ? MulAdd(v, factor, term) : v + term;
   };
-  return std::max(RateOf<10>(fused), RateOf<12>(mixed));
+  roofline.fused = RateOf<10>(fused);
+  roofline.arithmetic = std::max(roofline.fused, RateOf<12>(mixed));
 }
 
 double StoreRate(Level level) {
@@ -106,12 +106,12 @@ std::int64_t RingBytes(Level level) {
 
 Roofline MeasureRoofline() {
   Roofline roofline;
-  roofline.arithmetic = ArithmeticRate();
+  MeasureArithmetic(roofline);
   const L two(2.0);
   roofline.divisions =
-      RateOf<8>([&](int, const L& v) __attribute__((always_inline)) { return two / v; });
+      RateOf<8>([=](int, const L& v) __attribute__((always_inline)) { return two / v; });
   roofline.roots =
-      RateOf<8>([&](int, const L& v) __attribute__((always_inline)) { return Sqrt(v); });
+      RateOf<8>([](int, const L& v) __attribute__((always_inline)) { return Sqrt(v); });
   for (Level level : {Level::kL1, Level::kL2, Level::kMemory}) {
     roofline.stores[static_cast<int>(level)] = StoreRate(level);
   }

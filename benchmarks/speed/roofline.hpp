@@ -12,6 +12,7 @@ enum class Level { kL1, kL2, kMemory };
 
 struct Roofline {
   // Vector instructions a second on one core, of kNativeLanes doubles each.
+  double fused;       // fused multiply-adds
   double arithmetic;  // additions and fused multiply-adds, mixed as runs fastest
   double divisions, roots;
   // Bytes a second that one core stores; to memory with streaming stores.
