@@ -159,6 +159,15 @@ concept OffersCurvature = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kP
 template <class E>
 inline constexpr bool kStudied = false;
 
+// Whether it shows where the time of an energy goes: the stages of the filters that say so
+// (`static constexpr bool kStages = true`) then have rows of their own. Said where the energy is.
+template <class E>
+inline constexpr bool kStaged = kStudied<E>;
+template <class F>
+inline constexpr bool kHasStages = requires {
+  requires F::kStages;
+};
+
 // Whether a filter's matrix is also written in other forms than packed (outputs.hpp). A filter says
 // so itself: `static constexpr bool kOutputs = true`.
 template <class F>
@@ -166,12 +175,19 @@ inline constexpr bool kHasOutputs = requires {
   requires F::kOutputs;
 };
 
-// The same vectors with map(lambda).
+// Whether a filter's lanes go two batches at a time (pair.hpp), for one alone would wait for its
+// roots and divisions: `static constexpr bool kInPairs = true`.
+template <class F>
+inline constexpr bool kPaired = requires {
+  requires F::kInPairs;
+};
+
+// Puts map(lambda) for each lambda. In place: g++ 12 copies modes that are returned by way of
+// memory, which took a third of a kernel.
 template <class AnyModes, class Map>
-DEFINITE_INLINE AnyModes MapModes(AnyModes modes, Map map) {
+DEFINITE_INLINE void MapWeights(AnyModes& modes, Map map) {
 #pragma GCC unroll 16
   for (int m = 0; m < AnyModes::kCount; ++m) modes.lambda[m] = map(modes.lambda[m]);
-  return modes;
 }
 
 // With the vectors written out.
@@ -187,8 +203,13 @@ DEFINITE_INLINE auto Stacked(const FramedModes<T, Stencil, K, kTurning>& framed)
   for (int m = 0; m < K; ++m) {
     modes.lambda[m] = framed.lambda[m];
     modes.v[m] = Kron(w, framed.t[m]);
-    if (framed.turns[m]) {
-      modes.v[m] = AddKron(modes.v[m], OverVertices<Stencil>(framed.r[m]), framed.n);
+    if (framed.turns[m] != 0) {
+      auto r = framed.r[m];
+#pragma GCC unroll 3
+      for (int e = 0; e < Stencil::kEdges; ++e) {
+        if (e >= framed.turns[m]) r[e] = T(0.0);
+      }
+      modes.v[m] = AddKron(modes.v[m], OverVertices<Stencil>(r), framed.n);
     }
   }
   return modes;

@@ -1,7 +1,8 @@
 #pragma once
 
 // What becomes of a filter's matrix: the outputs that a kernel can have. All but the frame consume
-// the same result of the filter, straight from registers.
+// the same result of the filter; kOfSum says whether they want a sum of modes or, better, the
+// modes.
 
 #include "kernels/core/applied.hpp"
 #include "kernels/kernel.hpp"
@@ -13,6 +14,7 @@ template <class E>
 struct PackedOutput {
   static constexpr std::string_view kName = "packed";
   static constexpr int kNumbers = E::kDofs * (E::kDofs + 1) / 2, kStride = kNumbers;
+  static constexpr bool kOfSum = true;
 
   template <class H, class Tile>
   static DEFINITE_INLINE void Write(const H& h, const Tile& tile) {
@@ -27,6 +29,7 @@ template <class E>
 struct DenseOutput {
   static constexpr std::string_view kName = "dense";
   static constexpr int kNumbers = E::kDofs * E::kDofs, kStride = kNumbers;
+  static constexpr bool kOfSum = true;
 
   template <class H, class Tile>
   static DEFINITE_INLINE void Write(const H& h, const Tile& tile) {
@@ -60,6 +63,7 @@ template <class E>
 struct AppliedOutput {
   static constexpr std::string_view kName = "applied";
   static constexpr int kNumbers = 2 * E::kDofs, kStride = kNumbers;
+  static constexpr bool kOfSum = false;
 
   template <class H, class Tile>
   static DEFINITE_INLINE void Write(const H& h, const Tile& tile) {
@@ -78,6 +82,7 @@ template <class E>
 struct BlockSumOutput {
   static constexpr std::string_view kName = "block_sum";
   static constexpr int kNumbers = E::kDofs * (E::kDofs + 1) / 2, kStride = 0;
+  static constexpr bool kOfSum = true;
 
   template <class H, class Tile>
   static DEFINITE_INLINE void Write(const H& h, const Tile& tile) {
@@ -95,6 +100,7 @@ struct FramedOutput {
   static constexpr int kEdges = E::Stencil::kEdges;
   static constexpr int kNumbers = 6 + 4 * (kEdges - 1) + 3 + kEdges * (kEdges - 1) / 2,
                        kStride = kNumbers;
+  static constexpr bool kOfSum = false;
 
   template <class H, class Tile>
   requires requires(const H& h) { SumOf(h); }
@@ -110,10 +116,12 @@ struct FramedOutput {
 #pragma GCC unroll 2
     for (int e = 0; e + 1 < kEdges; ++e) {
       tile.Store(at++, sum.w[e]);
+      if constexpr (std::remove_cvref_t<decltype(sum)>::kTurns) {
 #pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) tile.Store(at++, sum.a[e][i]);
+        for (int i = 0; i < 3; ++i) tile.Store(at++, sum.a[e][i]);
 #pragma GCC unroll 2
-      for (int g = e; g + 1 < kEdges; ++g) tile.Store(at++, sum.c[e][g]);
+        for (int g = e; g + 1 < kEdges; ++g) tile.Store(at++, sum.c[e][g]);
+      }
     }
   }
 };
@@ -123,7 +131,8 @@ struct FramedOutput {
 template <class E>
 struct FrameOutput {
   static constexpr std::string_view kName = "frame";
-  static constexpr int kNumbers = 12 + 2 * E::Stencil::kVertices, kStride = kNumbers;
+  static constexpr int kNumbers = 12 + 2 * (E::Stencil::kEdges - 1), kStride = kNumbers;
+  static constexpr bool kOfSum = false;
 
   template <class F, class T, class Tile>
   requires requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
@@ -141,10 +150,10 @@ struct FrameOutput {
       tile.Store(at++, f.t[0][a]);
       tile.Store(at++, f.t[1][a]);
     }
-#pragma GCC unroll 4
-    for (int j = 0; j < E::Stencil::kVertices; ++j) {
-      tile.Store(at++, f.w[j]);
-      tile.Store(at++, f.rows[1][j]);
+#pragma GCC unroll 2
+    for (int e = 0; e + 1 < E::Stencil::kEdges; ++e) {
+      tile.Store(at++, f.w[e]);
+      tile.Store(at++, f.rows[1][e]);
     }
     tile.Store(at++, f.inverse_length[0]);
     tile.Store(at++, f.inverse_length[1]);

@@ -12,6 +12,7 @@
 #include "kernels/core/counting.hpp"
 #include "kernels/kernel.hpp"
 #include "kernels/outputs.hpp"
+#include "kernels/run.hpp"
 
 // The lines that CMake reads. An energy is held against its concept where its rows are made, in a
 // file of its own: here it would be compiled for every energy anew.
@@ -29,114 +30,6 @@ struct EnergyTable {
 
 // One for each energy; CMake writes it.
 std::vector<EnergyTable> EnergyTables();
-
-// How a scalar type meets a tile: one configuration, or eight side by side. Eight is the storage,
-// whatever the machine's vectors hold: `Value` may need several passes over a tile.
-struct ScalarTile {
-  static constexpr std::string_view kScalar = "f64";
-  static constexpr int kLanes = 1, kPass = 1;
-  using Value = double;
-  static DEFINITE_INLINE double Load(const double* from) { return *from; }
-  static DEFINITE_INLINE void Store(double value, double* to) { *to = value; }
-};
-struct LanesTile {
-  static constexpr std::string_view kScalar = "f64x8";
-  static constexpr int kLanes = 8, kPass = kNativeLanes;
-  using Value = Lanes<double, kPass>;
-  static DEFINITE_INLINE Value Load(const double* from) { return Value::Load(from); }
-  static DEFINITE_INLINE void Store(const Value& value, double* to) { value.Store(to); }
-};
-
-// The numbers of one configuration, or of those that lie side by side, in a tile.
-template <class Layout>
-struct OutputTile {
-  double* first;
-
-  DEFINITE_INLINE void Store(int i, const typename Layout::Value& value) const {
-    Layout::Store(value, first + i * Layout::kLanes);
-  }
-  DEFINITE_INLINE typename Layout::Value Load(int i) const {
-    return Layout::Load(first + i * Layout::kLanes);
-  }
-};
-
-// The configurations of one pass over a tile.
-template <class E, class Layout>
-struct Pass {
-  Vec<typename Layout::Value, E::kDofs> x;
-  Vec<typename Layout::Value, E::kParams> p;
-
-  DEFINITE_INLINE Pass(const double* all_x, const double* all_p, long pass) {
-    constexpr int kW = Layout::kLanes, kPasses = kW / Layout::kPass;
-    const long tile = pass / kPasses, lane = pass % kPasses * Layout::kPass;
-#pragma GCC unroll 16
-    for (int i = 0; i < E::kDofs; ++i)
-      x[i] = Layout::Load(all_x + (tile * E::kDofs + i) * kW + lane);
-#pragma GCC unroll 16
-    for (int i = 0; i < E::kParams; ++i) {
-      p[i] = Layout::Load(all_p + (tile * E::kParams + i) * kW + lane);
-    }
-  }
-
-  // Where its numbers go; tiles are kStride numbers apart.
-  template <int kStride>
-  static DEFINITE_INLINE OutputTile<Layout> TileOf(double* out, long pass) {
-    constexpr int kW = Layout::kLanes, kPasses = kW / Layout::kPass;
-    return {out + pass / kPasses * kStride * kW + pass % kPasses * Layout::kPass};
-  }
-};
-
-// Runs `compute(x, p, tile)` over the tiles, each `kStride` numbers after the one before it.
-template <class E, class Tile, int kStride, class Compute>
-DEFINITE_INLINE void ForTiles(const double* x, const double* p, double* out, long tiles,
-                              Compute compute) {
-  for (long pass = 0; pass < tiles * (Tile::kLanes / Tile::kPass); ++pass) {
-    const Pass<E, Tile> in(x, p, pass);
-    compute(in.x, in.p, Pass<E, Tile>::template TileOf<kStride>(out, pass));
-  }
-}
-
-// The output of one pass: of the filter's result, or of the inputs themselves.
-template <class E, class F, class Output, class T, class Tile>
-DEFINITE_INLINE void WriteOutput(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p,
-                                 const Tile& tile) {
-  if constexpr (requires { Output::template WriteOf<F>(x, p, tile); }) {
-    Output::template WriteOf<F>(x, p, tile);
-  } else {
-    Output::Write(F::template Apply<E>(x, p), tile);
-  }
-}
-
-template <class E, class F, class Tile, class Output>
-void RunFilter(const double* x, const double* p, double* out, long tiles) {
-  using T = typename Tile::Value;
-  using P = Pass<E, Tile>;
-  if constexpr (Tile::kLanes > 1 && requires(const P& in) { F::template Begin<E>(in.x, in.p); }) {
-    // In stages: some passes side by side hide each other's latencies.
-    constexpr int kSideBySide = 4;
-    using State = decltype(F::template Begin<E>(Vec<T, E::kDofs>(), Vec<T, E::kParams>()));
-    State state[kSideBySide];
-    const long passes = tiles * (Tile::kLanes / Tile::kPass);
-    for (long first = 0; first < passes; first += kSideBySide) {
-      const int count = static_cast<int>(std::min<long>(kSideBySide, passes - first));
-      for (int i = 0; i < count; ++i) {
-        const P in(x, p, first + i);
-        state[i] = F::template Begin<E>(in.x, in.p);
-      }
-      for (int step = 0; step < State::kRefinements; ++step) {
-        for (int i = 0; i < count; ++i) state[i].Refine(step);
-      }
-      for (int i = 0; i < count; ++i) {
-        Output::Write(state[i].Result(), P::template TileOf<Output::kStride>(out, first + i));
-      }
-    }
-  } else {
-    ForTiles<E, Tile, Output::kStride>(
-        x, p, out, tiles,
-        [](const auto& xs, const auto& ps, const auto& tile)
-            __attribute__((always_inline)) { WriteOutput<E, F, Output>(xs, ps, tile); });
-  }
-}
 
 // What one configuration costs.
 template <class E, class F, class Output>
@@ -257,7 +150,7 @@ KernelRow MakeKernel() {
   row.lanes = Tile::kLanes;
   row.outputs = Output::kNumbers;
   row.run = RunFilter<E, F, Tile, Output>;
-  if constexpr (kStudied<E> && Tile::kLanes > 1) row.count = CountOperations<E, F, Output>;
+  if constexpr (kStaged<E> && Tile::kLanes > 1) row.count = CountOperations<E, F, Output>;
   return row;
 }
 
@@ -286,6 +179,8 @@ void AppendKernel(EnergyTable& table) {
       AppendOutput<E, F, Tile, DenseOutput<E>>(table.outputs);
       AppendOutput<E, F, Tile, AppliedOutput<E>>(table.outputs);
       AppendOutput<E, F, Tile, BlockSumOutput<E>>(table.outputs);
+    }
+    if constexpr (Tile::kLanes > 1 && (kStaged<E> && kHasStages<F>)) {
       AppendOutput<E, F, Tile, FrameOutput<E>>(table.outputs);
       AppendOutput<E, F, Tile, FramedOutput<E>>(table.outputs);
     }

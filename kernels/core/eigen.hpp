@@ -49,19 +49,20 @@ PackedSym<double, D> PullBackInEigen(const double* lambda, const Vec<double, F>*
   return result;
 }
 
-// The same of an energy's frame terms, added up. `weights` turns the modes of a term into those
-// that count.
+// The same of an energy's frame terms, added up, with weights(lambda) for each lambda.
 template <class E, class Weights>
 PackedSym<double, E::kDofs> FilterInFrame(const Vec<double, E::kDofs>& x,
                                           const Vec<double, E::kParams>& p, Weights weights,
                                           EigenvalueMap eigenvalues = nullptr) {
   PackedSym<double, E::kDofs> sum{};
-  const auto add = [&](const auto& term) {
-    const auto modes = weights(term.modes);
+  const auto add = [&](auto& term) {
+    auto& modes = term.modes;
+    MapWeights(modes, weights);
     const auto part = PullBackInEigen(modes.lambda, modes.v, modes.kCount, term.map, eigenvalues);
     for (int k = 0; k < part.kSize; ++k) sum.a[k] += part.a[k];
   };
-  std::apply([&](const auto&... term) { (add(term), ...); }, E::FrameTerms(x, p));
+  auto terms = E::FrameTerms(x, p);
+  std::apply([&](auto&... term) { (add(term), ...); }, terms);
   return sum;
 }
 

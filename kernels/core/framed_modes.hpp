@@ -4,7 +4,7 @@
 // w (x) n each of its modes is v = w (x) t + r (x) n; w and r are rows over the edges of the
 // stencil, of which the last has weight 1 in w and 0 in r. So a sum of modes is one symmetric 3x3
 // matrix and, for each other edge, a vector and a row: 15 numbers, which take far less to add up
-// than outer products of stacked vectors do, and which the vertices then add and subtract.
+// than outer products of stacked vectors do.
 //
 // Stencil: kVertices, kEdges, and kInEdges[vertex][edge], -1, 0 or 1: x_j = sum_e kInEdges[j][e] e.
 
@@ -17,10 +17,11 @@ template <class T, class FrameStencil, int K, bool kTurning>
 struct FramedModes {
   using Stencil = FrameStencil;
   static constexpr int kCount = K;
+  static constexpr bool kTurns = kTurning;
   T lambda[K];
   Vec3<T> t[K];
   Vec<T, Stencil::kEdges> r[K];
-  bool turns[K];  // else r is zero, and not set
+  int turns[K];  // edges that have an r, the first so many; that of the others is zero, and not set
   Vec<T, Stencil::kEdges> w;
   Vec3<T> n;
 };
@@ -31,6 +32,7 @@ template <class T, class FrameStencil, bool kTurning>
 struct FramedSum {
   using Stencil = FrameStencil;
   static constexpr int kEdges = Stencil::kEdges;
+  static constexpr bool kTurns = kTurning;
   T s[3][3];            // sum lambda t t^T
   Vec3<T> a[kEdges];    // sum lambda r_e t; of the last edge zero, and not set
   T c[kEdges][kEdges];  // sum lambda r_e r_f for e <= f, likewise
@@ -40,43 +42,64 @@ struct FramedSum {
 
 namespace internal {
 
-// sum_e sign[e] term(e) over edges where sign is not 0, times the sign of the first of these.
-template <int kEdges, class T, class Term>
-DEFINITE_INLINE T SignedSum(const int (&sign)[kEdges], Term term) {
-  T sum{};
-  int first = 0;
-#pragma GCC unroll 4
-  for (int e = 0; e < kEdges; ++e) {
-    if (sign[e] == 0) continue;
-    if (first == 0) {
-      first = sign[e];
-      sum = term(e);
-    } else {
-      sum = sign[e] == first ? sum + term(e) : sum - term(e);
-    }
+// sum_i sign[i] term(i) over the first kCount, of which at least one sign is not 0.
+template <int kCount, class T, class Term>
+DEFINITE_INLINE T SignedSum(const int* sign, Term term) {
+  int first = 0;  // a positive one if there is one
+#pragma GCC unroll 8
+  for (int i = kCount - 1; i >= 0; --i) {
+    if (sign[i] > 0 || (sign[i] < 0 && sign[first] <= 0)) first = i;
   }
+  T sum = term(first);
+#pragma GCC unroll 8
+  for (int i = 0; i < kCount; ++i) {
+    if (i == first || sign[i] == 0) continue;
+    sum = sign[i] == sign[first] ? sum + term(i) : sum - term(i);
+  }
+  return sign[first] < 0 ? -sum : sum;
+}
+
+// The last weight of w is 1: said where w is used, so that the compiler knows.
+template <class T, int kEdges>
+DEFINITE_INLINE Vec<T, kEdges> WithLast(Vec<T, kEdges> w) {
+  w[kEdges - 1] = T(1.0);
+  return w;
+}
+
+// Whether a vertex is in an edge other than the last: then modes with an r turn it.
+template <class Stencil>
+constexpr bool Turns(int vertex) {
+  for (int e = 0; e + 1 < Stencil::kEdges; ++e) {
+    if (Stencil::kInEdges[vertex][e] != 0) return true;
+  }
+  return false;
+}
+
+// The inner product over the vertices of two edges.
+template <class Stencil>
+constexpr int Shared(int e, int f) {
+  int sum = 0;
+  for (const auto& in : Stencil::kInEdges) sum += in[e] * in[f];
   return sum;
 }
 
-template <int kEdges>
-constexpr int FirstSign(const int (&sign)[kEdges]) {
-  for (int s : sign) {
-    if (s != 0) return s;
-  }
-  return 0;
-}
-
-// The vertex that has an edge alone, with weight 1; -1 if none has.
+// The Gram determinant over the vertices of the first `count` edges.
 template <class Stencil>
-constexpr int VertexOf(int edge) {
-  for (int j = 0; j < Stencil::kVertices; ++j) {
-    bool alone = true;
-    for (int e = 0; e < Stencil::kEdges; ++e) {
-      alone = alone && Stencil::kInEdges[j][e] == (e == edge ? 1 : 0);
-    }
-    if (alone) return j;
+constexpr int GramDeterminant(int count) {
+  int a[Stencil::kEdges][Stencil::kEdges];
+  for (int e = 0; e < count; ++e) {
+    for (int f = 0; f < count; ++f) a[e][f] = Shared<Stencil>(e, f);
   }
-  return -1;
+  int last = 1;  // elimination without fractions (Bareiss): all divisions come out even
+  for (int k = 0; k + 1 < count; ++k) {
+    for (int e = k + 1; e < count; ++e) {
+      for (int f = k + 1; f < count; ++f) {
+        a[e][f] = (a[k][k] * a[e][f] - a[e][k] * a[k][f]) / last;
+      }
+    }
+    last = a[k][k];
+  }
+  return a[count - 1][count - 1];
 }
 
 // Where entry (i, j), j >= i, lies in the upper triangle of `size` rows.
@@ -90,23 +113,43 @@ DEFINITE_INLINE Vec<T, Stencil::kVertices> OverVertices(const Vec<T, Stencil::kE
   Vec<T, Stencil::kVertices> all;
 #pragma GCC unroll 4
   for (int j = 0; j < Stencil::kVertices; ++j) {
-    const T sum = internal::SignedSum<Stencil::kEdges, T>(
+    all[j] = internal::SignedSum<Stencil::kEdges, T>(
         Stencil::kInEdges[j], [&](int e) __attribute__((always_inline)) { return row[e]; });
-    all[j] = internal::FirstSign(Stencil::kInEdges[j]) < 0 ? -sum : sum;
   }
   return all;
 }
 
-// A row over the vertices as one over the edges; that of the last edge is known.
+// The inner products over the vertices of each edge with a row over the edges, zero on the last. By
+// additions, which have units of their own on some machines.
 template <class Stencil, class T>
-DEFINITE_INLINE Vec<T, Stencil::kEdges> OverEdges(const Vec<T, Stencil::kVertices>& row,
-                                                  double last) {
-  constexpr int kLast = Stencil::kEdges - 1;
-  Vec<T, Stencil::kEdges> edges;
+DEFINITE_INLINE Vec<T, Stencil::kEdges> WithEdges(const Vec<T, Stencil::kEdges>& row) {
+  constexpr int kEdges = Stencil::kEdges, kMost = Stencil::kVertices;
+  Vec<T, kEdges> products;
+#pragma GCC unroll 3
+  for (int e = 0; e < kEdges; ++e) {
+    int sign[(kEdges - 1) * kMost] = {};  // row[f] as often as e and f share a vertex
 #pragma GCC unroll 2
-  for (int e = 0; e < kLast; ++e) edges[e] = row[internal::VertexOf<Stencil>(e)];
-  edges[kLast] = T(last);
-  return edges;
+    for (int f = 0; f + 1 < kEdges; ++f) {
+      const int shared = internal::Shared<Stencil>(e, f);
+#pragma GCC unroll 4
+      for (int i = 0; i < kMost; ++i) {
+        if (i < shared || i < -shared) sign[f * kMost + i] = shared < 0 ? -1 : 1;
+      }
+    }
+    products[e] = internal::SignedSum<(kEdges - 1) * kMost, T>(
+        sign, [&](int i) __attribute__((always_inline)) { return row[i / kMost]; });
+  }
+  return products;
+}
+
+// The inner product over the vertices of two rows over the edges that are zero on the last.
+template <class Stencil, class T>
+DEFINITE_INLINE T InnerProduct(const Vec<T, Stencil::kEdges>& a, const Vec<T, Stencil::kEdges>& b) {
+  const Vec<T, Stencil::kEdges> with_b = WithEdges<Stencil>(b);
+  T sum = a[0] * with_b[0];
+#pragma GCC unroll 2
+  for (int e = 1; e + 1 < Stencil::kEdges; ++e) sum = MulAdd(a[e], with_b[e], sum);
+  return sum;
 }
 
 // Adds lambda v v^T to the upper half of s, to a and to c.
@@ -152,7 +195,7 @@ DEFINITE_INLINE FramedSum<T, Stencil, kTurning> SumOf(
   FramedSum<T, Stencil, kTurning> sum;
   sum.w = modes.w;
   sum.n = modes.n;
-  bool first = true;
+  int edges = 0;  // edges that have been added to, the first so many
 #pragma GCC unroll 16
   for (int m = 0; m < K; ++m) {
     const Vec3<T> scaled = modes.lambda[m] * modes.t[m];
@@ -164,20 +207,22 @@ DEFINITE_INLINE FramedSum<T, Stencil, kTurning> SumOf(
             m == 0 ? scaled[i] * modes.t[m][j] : MulAdd(scaled[i], modes.t[m][j], sum.s[i][j]);
       }
     }
-    if (!modes.turns[m]) continue;
 #pragma GCC unroll 2
-    for (int e = 0; e < kLast; ++e) {
-      const T weight = modes.lambda[m] * modes.r[m][e];
+    for (int f = 0; f < kLast; ++f) {
+      if (f >= modes.turns[m]) break;
+      const T weight = modes.lambda[m] * modes.r[m][f];
 #pragma GCC unroll 3
       for (int i = 0; i < 3; ++i) {
-        sum.a[e][i] = first ? weight * modes.t[m][i] : MulAdd(weight, modes.t[m][i], sum.a[e][i]);
+        sum.a[f][i] =
+            f >= edges ? weight * modes.t[m][i] : MulAdd(weight, modes.t[m][i], sum.a[f][i]);
       }
 #pragma GCC unroll 2
-      for (int f = e; f < kLast; ++f) {
-        sum.c[e][f] = first ? weight * modes.r[m][f] : MulAdd(weight, modes.r[m][f], sum.c[e][f]);
+      for (int e = 0; e <= f; ++e) {
+        sum.c[e][f] =
+            f >= edges ? weight * modes.r[m][e] : MulAdd(weight, modes.r[m][e], sum.c[e][f]);
       }
     }
-    first = false;
+    edges = edges < modes.turns[m] ? modes.turns[m] : edges;
   }
   Mirror(sum);
   return sum;
@@ -214,70 +259,50 @@ DEFINITE_INLINE void ForPacked(const FramedSum<T, Stencil, false>& sum, Store st
 }
 template <class T, class Stencil, class Store>
 DEFINITE_INLINE void ForPacked(const FramedSum<T, Stencil, true>& sum, Store store) {
-  constexpr int kVertices = Stencil::kVertices, kEdges = Stencil::kEdges, kLast = kEdges - 1;
-  T block[kEdges][kEdges][3][3];  // of edges e <= f
-#pragma GCC unroll 3
-  for (int i = 0; i < 3; ++i) {
-#pragma GCC unroll 3
-    for (int j = 0; j < 3; ++j) {
-      block[kLast][kLast][i][j] = sum.s[i][j];
-#pragma GCC unroll 2
-      for (int e = 0; e < kLast; ++e) {
-        block[e][kLast][j][i] = MulAdd(sum.a[e][i], sum.n[j], sum.w[e] * sum.s[i][j]);
-      }
-    }
-  }
-#pragma GCC unroll 2
-  for (int e = 0; e < kLast; ++e) {
-#pragma GCC unroll 2
-    for (int f = e; f < kLast; ++f) {
-      Vec3<T> along_n;
-#pragma GCC unroll 3
-      for (int j = 0; j < 3; ++j)
-        along_n[j] = MulAdd(sum.c[e][f], sum.n[j], sum.w[f] * sum.a[e][j]);
-#pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) {
-#pragma GCC unroll 3
-        for (int j = e == f ? i : 0; j < 3; ++j) {
-          block[e][f][i][j] = MulAdd(sum.n[i], along_n[j], sum.w[e] * block[f][kLast][j][i]);
-          if (e == f) block[e][f][j][i] = block[e][f][i][j];
-        }
-      }
-    }
-  }
-  // Columns of the vertices, then their rows; without the sign of a vertex's first edge.
-  T column[kEdges][kVertices][3][3];
-#pragma GCC unroll 3
-  for (int e = 0; e < kEdges; ++e) {
+  constexpr int kVertices = Stencil::kVertices, kLast = Stencil::kEdges - 1;
+  const Vec<T, kVertices> w = OverVertices<Stencil>(internal::WithLast(sum.w));
+  Vec3<T> a[kVertices];
+  T column[3][3];  // w_v S + a_v n^T
 #pragma GCC unroll 4
-    for (int v = 0; v < kVertices; ++v) {
+  for (int v = 0; v < kVertices; ++v) {
+    const bool turns = internal::Turns<Stencil>(v);
 #pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i) {
+      if (turns) {
+        a[v][i] = internal::SignedSum<kLast, T>(
+            Stencil::kInEdges[v], [&](int e)
+                                      __attribute__((always_inline)) { return sum.a[e][i]; });
+      }
 #pragma GCC unroll 3
-        for (int j = 0; j < 3; ++j) {
-          column[e][v][i][j] = internal::SignedSum<kEdges, T>(
-              Stencil::kInEdges[v], [&](int f) __attribute__((always_inline)) {
-                return e <= f ? block[e][f][i][j] : block[f][e][j][i];
+      for (int j = 0; j < 3; ++j) {
+        const T part = w[v] * (i < j ? sum.s[i][j] : sum.s[j][i]);
+        column[i][j] = turns ? MulAdd(a[v][i], sum.n[j], part) : part;
+      }
+    }
+#pragma GCC unroll 4
+    for (int u = 0; u <= v; ++u) {
+      Vec3<T> along_n;  // w_v a_u + c_uv n
+      if (internal::Turns<Stencil>(u)) {
+        along_n = w[v] * a[u];
+        if (turns) {
+          const T c = internal::SignedSum<kLast, T>(
+              Stencil::kInEdges[u], [&](int e) __attribute__((always_inline)) {
+                return internal::SignedSum<kLast, T>(
+                    Stencil::kInEdges[v], [&](int f) __attribute__((always_inline)) {
+                      return e <= f ? sum.c[e][f] : sum.c[f][e];
+                    });
               });
+#pragma GCC unroll 3
+          for (int j = 0; j < 3; ++j) along_n[j] = MulAdd(c, sum.n[j], along_n[j]);
         }
       }
-    }
-  }
-#pragma GCC unroll 4
-  for (int u = 0; u < kVertices; ++u) {
-#pragma GCC unroll 4
-    for (int v = u; v < kVertices; ++v) {
-      const bool minus =
-          internal::FirstSign(Stencil::kInEdges[u]) != internal::FirstSign(Stencil::kInEdges[v]);
 #pragma GCC unroll 3
       for (int i = 0; i < 3; ++i) {
 #pragma GCC unroll 3
         for (int j = u == v ? i : 0; j < 3; ++j) {
-          const T entry = internal::SignedSum<kEdges, T>(
-              Stencil::kInEdges[u], [&](int e) __attribute__((always_inline)) {
-                return column[e][v][i][j];
-              });
-          store(internal::PackedIndex(3 * u + i, 3 * v + j, 3 * kVertices), minus ? -entry : entry);
+          T entry = w[u] * column[i][j];
+          if (internal::Turns<Stencil>(u)) entry = MulAdd(sum.n[i], along_n[j], entry);
+          store(internal::PackedIndex(3 * u + i, 3 * v + j, 3 * kVertices), entry);
         }
       }
     }
@@ -288,13 +313,77 @@ DEFINITE_INLINE void ForPacked(const FramedModes<T, Stencil, K, kTurning>& modes
   ForPacked(SumOf(modes), store);
 }
 
-// F d, matrix-free.
+// F d, that is the sum of w (x) push and row (x) n, row being zero on the last edge.
+template <class T, int kEdges>
+struct FramedVector {
+  Vec3<T> push;
+  Vec<T, kEdges> row;
+};
+
+// Of d, all = (w (x) I)^T d, and along_n[e] that of edge e along n.
 template <class T, class Stencil, bool kTurning>
-DEFINITE_INLINE auto Applied(const FramedSum<T, Stencil, kTurning>& sum,
-                             const Vec<T, 3 * Stencil::kVertices>& d) {
+DEFINITE_INLINE auto AppliedInFrame(const FramedSum<T, Stencil, kTurning>& sum, const Vec3<T>& all,
+                                    const Vec<T, Stencil::kEdges>& along_n) {
+  constexpr int kLast = Stencil::kEdges - 1;
+  FramedVector<T, Stencil::kEdges> f;
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) {
+    f.push[i] = sum.s[i][0] * all[0];
+#pragma GCC unroll 3
+    for (int j = 1; j < 3; ++j) f.push[i] = MulAdd(sum.s[i][j], all[j], f.push[i]);
+  }
+  if constexpr (kTurning) {
+#pragma GCC unroll 2
+    for (int e = 0; e < kLast; ++e) {
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) f.push[i] = MulAdd(sum.a[e][i], along_n[e], f.push[i]);
+      f.row[e] = Dot(sum.a[e], all);
+#pragma GCC unroll 2
+      for (int g = 0; g < kLast; ++g) {
+        f.row[e] = MulAdd(e <= g ? sum.c[e][g] : sum.c[g][e], along_n[g], f.row[e]);
+      }
+    }
+  }
+  return f;
+}
+// Mode by mode: adding them up first would take twice the operations.
+template <class T, class Stencil, int K, bool kTurning>
+DEFINITE_INLINE auto AppliedInFrame(const FramedModes<T, Stencil, K, kTurning>& modes,
+                                    const Vec3<T>& all, const Vec<T, Stencil::kEdges>& along_n) {
+  constexpr int kLast = Stencil::kEdges - 1;
+  FramedVector<T, Stencil::kEdges> f;
+  int edges = 0;  // of the row, that have been set
+#pragma GCC unroll 16
+  for (int m = 0; m < K; ++m) {
+    T along = Dot(modes.t[m], all);
+#pragma GCC unroll 2
+    for (int e = 0; e < kLast; ++e) {
+      if (e < modes.turns[m]) along = MulAdd(modes.r[m][e], along_n[e], along);
+    }
+    along = modes.lambda[m] * along;
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) {
+      f.push[i] = m == 0 ? along * modes.t[m][i] : MulAdd(along, modes.t[m][i], f.push[i]);
+    }
+#pragma GCC unroll 2
+    for (int e = 0; e < kLast; ++e) {
+      if (e >= modes.turns[m]) break;
+      f.row[e] = e >= edges ? along * modes.r[m][e] : MulAdd(along, modes.r[m][e], f.row[e]);
+    }
+    edges = edges < modes.turns[m] ? modes.turns[m] : edges;
+  }
+  return f;
+}
+
+// F d, matrix-free, of modes in that form or of their sum.
+template <class Framed, class T>
+DEFINITE_INLINE Vec<T, 3 * Framed::Stencil::kVertices> Applied(
+    const Framed& framed, const Vec<T, 3 * Framed::Stencil::kVertices>& d) {
+  using Stencil = typename Framed::Stencil;
   constexpr int kVertices = Stencil::kVertices, kEdges = Stencil::kEdges, kLast = kEdges - 1;
   // What meets edge e, sum_j kInEdges[j][e] d_j; and w of it.
   Vec3<T> at[kEdges], all;
+  Vec<T, kEdges> along_n;
 #pragma GCC unroll 3
   for (int e = kLast; e >= 0; --e) {
     int sign[kVertices];
@@ -302,62 +391,32 @@ DEFINITE_INLINE auto Applied(const FramedSum<T, Stencil, kTurning>& sum,
     for (int v = 0; v < kVertices; ++v) sign[v] = Stencil::kInEdges[v][e];
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
-      const T met = internal::SignedSum<kVertices, T>(
+      at[e][i] = internal::SignedSum<kVertices, T>(
           sign, [&](int v) __attribute__((always_inline)) { return d[3 * v + i]; });
-      at[e][i] = internal::FirstSign(sign) < 0 ? -met : met;
-      all[i] = e == kLast ? at[e][i] : MulAdd(sum.w[e], at[e][i], all[i]);
+      all[i] = e == kLast ? at[e][i] : MulAdd(framed.w[e], at[e][i], all[i]);
     }
+    if (Framed::kTurns && e < kLast) along_n[e] = Dot(framed.n, at[e]);
   }
-  Vec3<T> push;  // S all + sum a_e (n . at_e)
-  Vec<T, kEdges> of_edge, along_n;
-#pragma GCC unroll 3
-  for (int i = 0; i < 3; ++i) {
-    push[i] = sum.s[i][0] * all[0];
-#pragma GCC unroll 3
-    for (int j = 1; j < 3; ++j) push[i] = MulAdd(sum.s[i][j], all[j], push[i]);
-  }
-  if constexpr (kTurning) {
-#pragma GCC unroll 2
-    for (int e = 0; e < kLast; ++e) {
-      along_n[e] = Dot(sum.n, at[e]);
-#pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) push[i] = MulAdd(sum.a[e][i], along_n[e], push[i]);
-    }
-#pragma GCC unroll 2
-    for (int e = 0; e < kLast; ++e) {
-      of_edge[e] = Dot(sum.a[e], all);
-#pragma GCC unroll 2
-      for (int f = 0; f < kLast; ++f) {
-        of_edge[e] = MulAdd(e <= f ? sum.c[e][f] : sum.c[f][e], along_n[f], of_edge[e]);
-      }
-    }
-  }
+  const FramedVector<T, kEdges> f = AppliedInFrame(framed, all, along_n);
   Vec3<T> force[kEdges];
 #pragma GCC unroll 3
   for (int e = 0; e < kEdges; ++e) {
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
-      force[e][i] = e == kLast ? push[i] : sum.w[e] * push[i];
-      if (kTurning && e < kLast) force[e][i] = MulAdd(of_edge[e], sum.n[i], force[e][i]);
+      force[e][i] = e == kLast ? f.push[i] : framed.w[e] * f.push[i];
+      if (Framed::kTurns && e < kLast) force[e][i] = MulAdd(f.row[e], framed.n[i], force[e][i]);
     }
   }
   Vec<T, 3 * kVertices> y;
 #pragma GCC unroll 4
   for (int v = 0; v < kVertices; ++v) {
-    const bool minus = internal::FirstSign(Stencil::kInEdges[v]) < 0;
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
-      const T total = internal::SignedSum<kEdges, T>(
+      y[3 * v + i] = internal::SignedSum<kEdges, T>(
           Stencil::kInEdges[v], [&](int e) __attribute__((always_inline)) { return force[e][i]; });
-      y[3 * v + i] = minus ? -total : total;
     }
   }
   return y;
-}
-template <class T, class Stencil, int K, bool kTurning>
-DEFINITE_INLINE auto Applied(const FramedModes<T, Stencil, K, kTurning>& modes,
-                             const Vec<T, 3 * Stencil::kVertices>& d) {
-  return Applied(SumOf(modes), d);
 }
 
 }  // namespace definite

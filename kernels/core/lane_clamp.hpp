@@ -45,7 +45,7 @@ Modes<T, N, N> PositivePart(const PackedSym<T, N>& h) {
   const EigenSystem<T, N> e = SolveInUnits<Solver>(h);
   Modes<T, N, N> positive;
   for (int m = 0; m < N; ++m) {
-    positive.lambda[m] = Select(e.values[m] < T(0.0), T(0.0), e.values[m]);
+    positive.lambda[m] = Max(T(0.0), e.values[m]);
     for (int i = 0; i < N; ++i) positive.v[m][i] = e.vectors[i][m];
   }
   return positive;

@@ -25,8 +25,9 @@ inline constexpr double kUnitRoundoff<Lanes<double, W>> = 0x1p-53;
 
 // The sine under which two edges count as parallel; a constant of the protocol.
 inline constexpr double kTau = 1e-8;
-// Lengths and areas below these (in units of the largest edge component) give Hessians that double
-// precision cannot hold.
-inline constexpr double kLeastLength = 0x1p-450, kLeastArea = 0x1p-450;
+// In units of the largest edge component: distances below which primitives touch, and edges and
+// areas below which a pair is out of domain, for what hangs on such an edge is far less than a
+// rounding error of the rest.
+inline constexpr double kLeastLength = 0x1p-100, kLeastEdge = 0x1p-56, kLeastArea = 0x1p-56;
 
 }  // namespace definite

@@ -80,7 +80,9 @@ template <class T, int N>
 template <int kFirst, int K, int... m>
 DEFINITE_INLINE SecularRoots<T, N, K> SecularEquation<T, N>::Roots(
     const T (&near)[K], std::integer_sequence<int, m...>) const {
-  constexpr int kMostSteps = 40;  // not needed; so that no rounding can make it endless
+  // A start at the wrong end of its bracket doubles its distance from there at each step: 40 from
+  // kLeastPart, and a few to settle. No rounding can make it endless.
+  constexpr int kMostSteps = 60;
   // All roots side by side: K short chains of operations instead of a long one. Each is one copy of
   // Step, which is most of what the compiler has to read.
   Bracket b[K] = {From<kFirst + m>(near[m])...};

@@ -109,7 +109,7 @@ void QlStep(int first, const T& end, Tridiagonal<T, N>& t, T (&q)[N][N]) {
     const T square = MulAdd(bulge, bulge, diagonal * diagonal);
     const auto still = square <= T(0.0);
     const T r = Sqrt(square);
-    const T inverse = T(1.0) / Select(still, T(1.0), r);
+    const T inverse = T(1.0) / Max(r, T(0x1p-1022));
     c = Select(still, T(1.0), diagonal * inverse);
     const T s = bulge * inverse;
     const T rest = d[i + 1] - moved;

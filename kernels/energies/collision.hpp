@@ -101,7 +101,7 @@ struct Collision {
   template <class T>
   static DEFINITE_INLINE Vec<T, kDofs> Gradient(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const auto f = Length::FrameOf(x, p[2]);
-    return Kron(f.FromUnits(SlopesAt(f, p).psi1) * f.w, f.n);  // Eq. 16
+    return Kron(f.FromUnits(SlopesAt(f, p).psi1) * OverVertices<Stencil>(f.w), f.n);  // Eq. 16
   }
 
   template <class T>
@@ -124,14 +124,30 @@ struct Collision {
       const auto slopes = SlopesAt(f.l, q, (f.l >= q[1]) | Penalty::Outside(f.l, q));
       return Length::PrintedModes(f, slopes.psi1, slopes.psi2);
     } else {
-      auto f = Length::FrameOf(x, p[2]);
-      const auto slopes = SlopesAt(f, p);
-      if constexpr (kSet == Set::kSplit) {
-        f = TurnedInX<Length::kTangents, Length::kGramDeterminant>(f);
-      }
-      return PullBack<Stencil>(f, ModesOf<kSet, kPart>(f, slopes));
+      return PendingModes<kSet, T>(x, p).template OfPart<kPart>();
     }
   }
+
+  // The same in two stages: the frame of a set, and its modes.
+  template <Set kSet, class T>
+  class PendingModes {
+   public:
+    DEFINITE_INLINE PendingModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p)
+        : f_(Length::FrameOf(x, p[2])), slopes_(SlopesAt(f_, p)) {
+      if constexpr (kSet == Set::kSplit) TurnInX<Length::kTangents>(f_);
+    }
+
+    template <Part kPart>
+    DEFINITE_INLINE auto OfPart() const {
+      constexpr bool kTriangular =
+          kSet != Set::kSplit && Length::kTangents.of[0] != Tangent::kByRegion;
+      return PullBack<kTriangular>(f_, ModesOf<kSet, kPart>(f_, slopes_));
+    }
+
+   private:
+    decltype(Length::FrameOf(Vec<T, kDofs>(), T())) f_;
+    Slopes<T> slopes_;
+  };
 
   // The nearest PSD matrix, in stages (collision_nearest.hpp).
   template <class T>
@@ -139,15 +155,15 @@ struct Collision {
       auto BeginNearest(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const auto f = Length::FrameOf(x, p[2]);
     const auto slopes = SlopesAt(f, p);
-    return Projection<T>(f, TurnedRowsOf<Length::kTangents, Length::kGramDeterminant>(f),
-                         slopes.psi1, slopes.psi2);
+    return Projection<T>(f, TurnedRowsOf<Length::kTangents>(f), slopes.psi1, slopes.psi2);
   }
   // Without a free tangent all modes are orthogonal already.
   template <class T>
   requires(!kTurns) static DEFINITE_INLINE
       auto Nearest(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
-    return MapModes(HessianModes<Set::kSplit, Part::kPositive>(x, p),
-                    [](const T& l) { return Select(l < T(0.0), T(0.0), l); });
+    auto modes = HessianModes<Set::kSplit, Part::kPositive>(x, p);
+    MapWeights(modes, [](const T& lambda) { return Max(T(0.0), lambda); });
+    return modes;
   }
 
   // The Hessian as the paper assembles it: map^T H map summed over one or two terms (Eq. 17), each
@@ -176,7 +192,7 @@ struct Collision {
                           decltype(Length::FrameOf(Vec<T, kDofs>(), T()))::kFreeSlots, T>;
 
   // A length whose frame set is not its pairs of free modes.
-  static constexpr bool kSplits = requires(CollisionFrame<double, 4, 2> f) {
+  static constexpr bool kSplits = requires(CollisionFrame<double, Stencil, 2> f) {
     Length::template SplitModes<Part::kAll>(f, 0.0, 0.0);
   };
 

@@ -47,7 +47,8 @@ struct CollisionAnisotropic {
   template <class T>
   static DEFINITE_INLINE Vec<T, kDofs> Gradient(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const Mixed<T> mixed = MixedOf(x, p);
-    return Kron(mixed.f.FromUnits(mixed.psi1 * mixed.slope) * mixed.f.w, mixed.f.n);
+    const T slope = mixed.f.FromUnits(mixed.psi1 * mixed.slope);
+    return Kron(slope * OverVertices<Stencil>(mixed.f.w), mixed.f.n);
   }
 
   template <class T>
@@ -62,21 +63,20 @@ struct CollisionAnisotropic {
       auto HessianModes(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     Mixed<T> mixed = MixedOf(x, p);
     if constexpr (kSet == Set::kFrame) {
-      return PullBack<Stencil>(mixed.f, FrameModesOf<kPart>(mixed));
+      return PullBack<true>(mixed.f, FrameModesOf<kPart>(mixed));
     } else {
       if constexpr (kSet == Set::kSplit) {
-        mixed.f = TurnedInX<kBothFree, Stencil::kGramDeterminant>(mixed.f);
+        TurnInX<kBothFree>(mixed.f);
       }
-      return PullBack<Stencil>(mixed.f, Exact<kPart>(mixed));
+      return PullBack<kSet != Set::kSplit>(mixed.f, Exact<kPart>(mixed));
     }
   }
 
   template <class T>
   static DEFINITE_INLINE auto BeginNearest(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const Mixed<T> mixed = MixedOf(x, p);
-    return CollisionProjection<Stencil, kBothFree, 2, T>(
-        mixed.f, TurnedRowsOf<kBothFree, Stencil::kGramDeterminant>(mixed.f),
-        mixed.psi1 * mixed.slope, mixed.psi2);
+    return CollisionProjection<Stencil, kBothFree, 2, T>(mixed.f, TurnedRowsOf<kBothFree>(mixed.f),
+                                                         mixed.psi1 * mixed.slope, mixed.psi2);
   }
 
   // Eq. 35 on the frame: psi_l H_l with the curvature, psi_u H_u, and -psi_u H_u with the map D.
@@ -97,7 +97,7 @@ struct CollisionAnisotropic {
 
   template <class T>
   struct Mixed {
-    CollisionFrame<T, 4, 2> f;
+    CollisionFrame<T, Stencil, 2> f;
     MaskOf<T> idle;
     T h, slope;        // h and dh/dl
     T psi1;            // psi'(h)/unit

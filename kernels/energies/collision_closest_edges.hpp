@@ -10,6 +10,9 @@
 
 namespace definite {
 
+template <Clamped kKind>
+inline constexpr bool kStaged<Collision<ClosestEdges<kKind>, Quadratic>> = true;
+
 DEFINITE_ENERGY(Collision<ClosestEdges<Clamped::kEnvelope>, Quadratic>);
 DEFINITE_ENERGY(Collision<ClosestEdges<Clamped::kEnvelope>, Cubic>);
 DEFINITE_ENERGY(Collision<ClosestEdges<Clamped::kEnvelope>, LogBarrier>);

@@ -59,9 +59,9 @@ struct CollisionMollified {
     const T slope = f.FromUnits(weights.psi_m1 + weights.psi_m1);
     const Vec<T, 4> of_a = {T(-1.0), T(1.0), T(0.0), T(0.0)};
     const Vec<T, 4> of_b = {T(0.0), T(0.0), T(-1.0), T(1.0)};
-    return AddKron(
-        AddKron(Kron(f.FromUnits(weights.psi1_m) * f.w, f.n), slope * of_a, frame.slope0),
-        slope * of_b, frame.slope1);
+    return AddKron(AddKron(Kron(f.FromUnits(weights.psi1_m) * OverVertices<Stencil>(f.w), f.n),
+                           slope * of_a, frame.slope0),
+                   slope * of_b, frame.slope1);
   }
 
   template <class T>
@@ -95,12 +95,13 @@ struct CollisionMollified {
   template <class T>
   static auto FrameTerms(const Vec<T, kDofs>& x, const Vec<T, kParams>& p) {
     const auto frame = MollifiedFrameOf(x, p[2]);
-    const Vec<T, 4> rows[] = {frame.row0, frame.row1, frame.length.w};
+    const Vec3<T> rows[] = {frame.row0, frame.row1, frame.length.w};
     FrameTerm<T, 9, kDofs, 9> term;
     term.modes = EigenModes(frame, EntriesOf(frame, WeightsOf(frame, p)));
     for (int i = 0; i < 9; ++i) {
+      const auto row = OverVertices<Stencil>(rows[i / 3]);
       for (int j = 0; j < kDofs; ++j) {
-        term.map[i][j] = j % 3 == i % 3 ? rows[i / 3][j / 3] : T(0.0);
+        term.map[i][j] = j % 3 == i % 3 ? row[j / 3] : T(0.0);
       }
     }
     return std::tuple(term);

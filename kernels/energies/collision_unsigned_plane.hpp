@@ -11,6 +11,9 @@
 
 namespace definite {
 
+template <>
+inline constexpr bool kStaged<Collision<UnsignedPlane<VertexFace>, Quadratic>> = true;
+
 DEFINITE_ENERGY(Collision<UnsignedPlane<VertexFace>, Quadratic>);
 DEFINITE_ENERGY(Collision<UnsignedPlane<VertexFace>, Cubic>);
 DEFINITE_ENERGY(Collision<UnsignedPlane<VertexFace>, LogBarrier>);

@@ -8,7 +8,7 @@
 // in closed form (their listed vectors vanish at rest); edges of any length, H = D^-1 H_unit D^-1
 // with D = diag(|e0| I, |e1| I), since theta does not change with an edge's length.
 // Parameters: mu (energy), omega0 = pi - theta0 (radians).
-// Domain: both edges longer than kLeastLength (in any unit) and sin(theta) > 1e-8. Always active.
+// Domain: both edges longer than kLeastStrandEdge (in any unit) and sin(theta) > 1e-8. Always active.
 
 #include <string>
 
@@ -19,6 +19,8 @@
 #include "kernels/stencils/corner.hpp"
 
 namespace definite {
+
+inline constexpr double kLeastStrandEdge = 0x1p-450;  // of any unit
 
 struct StrandBend {
   using Stencil = Corner;
@@ -107,8 +109,8 @@ struct StrandBend {
     for (int i = 0; i < 2; ++i) {
       // A power of two keeps the squares in range.
       const T magnitude = Max(Max(Abs(e[i][0]), Abs(e[i][1])), Abs(e[i][2]));
-      const auto none = magnitude <= T(kLeastLength);
-      const T scale = Select(none, T(1.0), InversePowerOfTwo(Max(magnitude, T(kLeastLength))));
+      const auto none = magnitude <= T(kLeastStrandEdge);
+      const T scale = Select(none, T(1.0), InversePowerOfTwo(Max(magnitude, T(kLeastStrandEdge))));
       const Vec3<T> scaled = scale * e[i];
       const T length = Sqrt(Select(none, T(1.0), Dot(scaled, scaled)));
       e[i] = (T(1.0) / length) * scaled;

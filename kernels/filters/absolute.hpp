@@ -19,8 +19,9 @@ struct Absolute {
 
   template <class E, class T>
   static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    return MapModes(E::template HessianModes<Set::kFrame, Part::kAll>(x, p),
-                    [](const T& lambda) { return Abs(lambda); });
+    auto modes = E::template HessianModes<Set::kFrame, Part::kAll>(x, p);
+    MapWeights(modes, [](const T& lambda) { return Abs(lambda); });
+    return modes;
   }
 };
 

@@ -10,7 +10,7 @@ namespace definite {
 struct Analytic {
   static constexpr std::string_view kName = "analytic";
   static constexpr std::string_view kSource = "Shi & Kim 2023, Eqs. 11-13, 17; stable modes";
-  static constexpr bool kOutputs = true, kTimesFrame = true;
+  static constexpr bool kOutputs = true, kStages = true, kTimesFrame = true;
   static constexpr Exemption kExempt[] = {
       {Property::kRelabelling,
        "the paper's frame starts at e0, and the frame map is not orthogonal"},
@@ -18,9 +18,9 @@ struct Analytic {
 
   template <class E, class T>
   static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    // A NaN is not below zero, so it stays.
-    return MapModes(E::template HessianModes<Set::kFrame, Part::kPositive>(x, p),
-                    [](const T& lambda) { return Select(lambda < T(0.0), T(0.0), lambda); });
+    auto modes = E::template HessianModes<Set::kFrame, Part::kPositive>(x, p);
+    MapWeights(modes, [](const T& lambda) { return Max(T(0.0), lambda); });  // a NaN stays
+    return modes;
   }
 };
 

@@ -19,7 +19,7 @@ struct AnalyticFrame {
   template <class E, class T>
   requires WithFrame<E, T> && std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    return FilterInFrame<E>(x, p, [](const auto& modes) { return MapModes(modes, ClampToPsd); });
+    return FilterInFrame<E>(x, p, ClampToPsd);
   }
 };
 

@@ -24,8 +24,9 @@ struct AnalyticPrinted {
   template <class E, class T>
   requires OffersSet<E, T, Set::kPrinted>
   static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
-    return MapModes(E::template HessianModes<Set::kPrinted, Part::kAll>(x, p),
-                    [](const T& lambda) { return Select(lambda < T(0.0), T(0.0), lambda); });
+    auto modes = E::template HessianModes<Set::kPrinted, Part::kAll>(x, p);
+    MapWeights(modes, [](const T& lambda) { return Max(T(0.0), lambda); });
+    return modes;
   }
 };
 

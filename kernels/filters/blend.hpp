@@ -21,9 +21,10 @@ struct Blend {
   template <class E, class T>
   static DEFINITE_INLINE auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     const T minus_w = T(-double{kNumerator} / double{kDenominator});
-    return MapModes(
-        E::template HessianModes<Set::kFrame, Part::kAll>(x, p),
-        [&](const T& lambda) { return Select(lambda < T(0.0), minus_w * lambda, lambda); });
+    auto modes = E::template HessianModes<Set::kFrame, Part::kAll>(x, p);
+    MapWeights(modes,
+               [&](const T& lambda) { return Select(lambda < T(0.0), minus_w * lambda, lambda); });
+    return modes;
   }
 };
 

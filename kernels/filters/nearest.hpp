@@ -15,7 +15,7 @@ namespace definite {
 struct Nearest {
   static constexpr std::string_view kName = "nearest";
   static constexpr std::string_view kSource = "docs/derivations.md, section 2";
-  static constexpr bool kOutputs = true;
+  static constexpr bool kOutputs = true, kStages = true;
   static constexpr std::array<Exemption, 0> kExempt{};
 
   template <class E, class T>

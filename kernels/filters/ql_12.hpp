@@ -11,6 +11,7 @@ namespace definite {
 struct Ql12 {
   static constexpr std::string_view kName = "ql_12";
   static constexpr std::string_view kSource = "Golub & Van Loan, section 8.3";
+  static constexpr bool kInPairs = true;
   static constexpr Exemption kExempt[] = {
       {Property::kAccurate, "its error is u |H|, however small the result: deep penetration"},
   };

@@ -11,6 +11,7 @@ namespace definite {
 struct Ql9 {
   static constexpr std::string_view kName = "ql_9";
   static constexpr std::string_view kSource = "Golub & Van Loan, section 8.3";
+  static constexpr bool kInPairs = true;
   static constexpr Exemption kExempt[] = {
       {Property::kAccurate, "its error is u |H| of the frame, however small the result"},
       {Property::kRelabelling,

@@ -7,7 +7,7 @@
 // Differs: the two parameters are clamped jointly (one by one would be wrong for half of all random
 // pairs); Eq. 25 with the right activation test; in the interior the normal comes from the cross
 // product, never from a difference of close points.
-// Domain: both edges longer than nothing, and the distance above kLeastLength. Parallel edges are
+// Domain: both edges above kLeastEdge, and the distance above kLeastLength. Parallel edges are
 // in it: their closest points are taken at an endpoint.
 
 #include "kernels/lengths/unsigned_plane.hpp"
@@ -39,11 +39,10 @@ struct ClosestEdges {
       kKind == Clamped::kHybrid ? "sign of the triple product: -1 flips it, +1 and 0 keep it"
                                 : "+1 outside, -1 penetrating, 0 by the sign of the triple product";
   static constexpr Tangents kTangents = kKind == Clamped::kFrozen ? kBothFixed : kBothByRegion;
-  static constexpr int kGramDeterminant = Stencil::kGramDeterminant;
 
   template <class T>
-  static DEFINITE_INLINE CollisionFrame<T, 4, 2> FrameOf(const Vec<T, 12>& x, const T& side) {
-    CollisionFrame<T, 4, 2> f;
+  static DEFINITE_INLINE CollisionFrame<T, Stencil, 2> FrameOf(const Vec<T, 12>& x, const T& side) {
+    CollisionFrame<T, Stencil, 2> f;
     Edges<T> edges = Stencil::EdgesOf(x);
     Prescale(f, edges);
     const Plane<T> plane = PlaneOf(edges);
@@ -105,11 +104,11 @@ struct ClosestEdges {
   // Replaces the frame, where `endpoint`, by that of the nearest vertex.
   template <class T>
   static DEFINITE_INLINE void SetEndpoint(const Edges<T>& edges, const T& s,
-                                          const MaskOf<T>& endpoint, CollisionFrame<T, 4, 2>& f) {
+                                          const MaskOf<T>& endpoint,
+                                          CollisionFrame<T, Stencil, 2>& f) {
     const auto& [e0, e1, e2] = edges;
     T aa = Dot(e0, e0), bb = Dot(e1, e1);
-    const auto no_edge =
-        (aa <= T(kLeastLength * kLeastLength)) | (bb <= T(kLeastLength * kLeastLength));
+    const auto no_edge = (aa <= T(kLeastEdge * kLeastEdge)) | (bb <= T(kLeastEdge * kLeastEdge));
     aa = Select(no_edge, T(1.0), aa);
     bb = Select(no_edge, T(1.0), bb);
     const T inverse_a = T(1.0) / Sqrt(aa), inverse_b = T(1.0) / Sqrt(bb);
@@ -150,9 +149,8 @@ struct ClosestEdges {
     d = d - Dot(d, n) * n;
     const Vec3<T> t0 = (T(1.0) / Sqrt(Dot(d, d))) * d;
     const Vec3<T> t1 = Cross(n, t0);
-    const Vec<T, 4> row = {Select(along_a, T(-1.0), T(0.0)), Select(along_a, T(1.0), T(0.0)),
-                           Select(along_a, T(0.0), T(-1.0)), Select(along_a, T(0.0), T(1.0))};
-    const Vec<T, 4> w = {best.a - T(1.0), -best.a, T(1.0) - best.b, best.b};
+    const Vec3<T> row = {Select(along_a, T(1.0), T(0.0)), Select(along_a, T(0.0), T(1.0)), T(0.0)};
+    const Vec3<T> w = {-best.a, best.b, T(1.0)};
 
     f.l = Select(endpoint, s * u, f.l);
     f.n = SelectAll(endpoint, n, f.n);

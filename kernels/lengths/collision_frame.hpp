@@ -30,21 +30,22 @@ inline constexpr Tangents kBothFixed{{Tangent::kFixed, Tangent::kFixed}};
 inline constexpr Tangents kFreeAndFixed{{Tangent::kFree, Tangent::kFixed}};
 inline constexpr Tangents kBothByRegion{{Tangent::kByRegion, Tangent::kByRegion}};
 
-// Of kVertices vertices. The frame coordinates c are kSlots edges, each the partner of a tangent,
-// and then the vector between the closest points.
-template <class T, int kVertices, int kSlots>
+// The frame coordinates c are kSlots edges, each the partner of a tangent, and then the vector
+// between the closest points. Rows are over the edges of the stencil (framed_modes.hpp).
+template <class T, class FrameStencil, int kSlots>
 struct CollisionFrame {
+  using Stencil = FrameStencil;
+  using Row = Vec<T, Stencil::kEdges>;
   static constexpr int kFreeSlots = kSlots;
-  static constexpr int kCoordinates = 3 * (kSlots + 1), kDofs = 3 * kVertices;
-  T scale, lift;              // lengths below are in units of 1 / (scale lift)
-  MaskOf<T> outside;          // not in the domain; the rest is then finite and meaningless
-  T l;                        // the length, with its sign
-  Vec3<T> n;                  // grad l = w (x) n, n a unit vector
-  Vec<T, kVertices> w;        // for a vertex and a face (1, -barycentric coordinates)
-  Vec3<T> t[2];               // unit tangents, normal to n and to each other
-  Vec<T, kVertices> rows[2];  // the slots of the frame map: an edge in terms of the vertices
-  T inverse_length[2];        // 1/len of the slots
-  MaskOf<T> fixed[2];         // for Tangent::kByRegion
+  T scale, lift;        // lengths below are in units of 1 / (scale lift)
+  MaskOf<T> outside;    // not in the domain; the rest is then finite and meaningless
+  T l;                  // the length, with its sign
+  Vec3<T> n;            // grad l = w (x) n, n a unit vector
+  Row w;                // of the last edge, which joins the primitives, 1
+  Vec3<T> t[2];         // unit tangents, normal to n and to each other
+  Row rows[2];          // the slots of the frame map; of the last edge 0
+  T inverse_length[2];  // 1/len of the slots
+  MaskOf<T> fixed[2];   // for Tangent::kByRegion
   T region;
 
   DEFINITE_INLINE T InUnits(const T& length) const { return length * lift * scale; }
@@ -61,13 +62,21 @@ DEFINITE_INLINE void Prescale(Frame& f, Vec3<T>& first, Edge&... others) {
     largest[i] = Abs(first[i]);
     ((largest[i] = Max(largest[i], Abs(others[i]))), ...);
   }
-  const T magnitude = Max(Max(largest[0], largest[1]), largest[2]);
-  // Subnormal lengths are lifted first: they have no exponent to read.
+  T magnitude = Max(Max(largest[0], largest[1]), largest[2]);
+  f.lift = T(1.0);
+  // Subnormal lengths are lifted first: they have no exponent to read. A branch, since the scale is
+  // on the longest path of the kernel.
   constexpr double kSmallestNormal = 0x1p-1022;
-  f.lift = Select(magnitude < T(kSmallestNormal), T(0x1p54), T(1.0));
-  f.scale = InversePowerOfTwo(Max(magnitude * f.lift, T(kSmallestNormal)));
-  first = f.scale * (f.lift * first);
-  ((others = f.scale * (f.lift * others)), ...);
+  const auto subnormal = magnitude < T(kSmallestNormal);
+  if (Any(subnormal)) [[unlikely]] {
+    f.lift = Select(subnormal, T(0x1p54), T(1.0));
+    magnitude = magnitude * f.lift;
+    first = f.lift * first;
+    ((others = f.lift * others), ...);
+  }
+  f.scale = InversePowerOfTwo(Max(magnitude, T(kSmallestNormal)));  // of zero, and of NaN
+  first = f.scale * first;
+  ((others = f.scale * others), ...);
 }
 template <class Frame, class T>
 DEFINITE_INLINE void Prescale(Frame& f, Edges<T>& edges) {
@@ -88,21 +97,23 @@ DEFINITE_INLINE Plane<T> PlaneOf(const Edges<T>& edges) {
   const auto& [e0, e1, e2] = edges;
   Plane<T> plane;
   const Vec3<T> c = Cross(e0, e1);
-  T area2 = Dot(c, c), aa = Dot(e0, e0);
-  plane.parallel = area2 <= Max(T(kTau * kTau) * (aa * Dot(e1, e1)), T(kLeastArea * kLeastArea));
-  area2 = Select(plane.parallel, T(1.0), area2);
-  aa = Select(plane.parallel, T(1.0), aa);
-  const T area = Sqrt(area2), a = Sqrt(aa);
+  const T area2 = Dot(c, c), aa = Dot(e0, e0), bb = Dot(e1, e1);
+  const T least = Max(T(kTau * kTau) * (aa * bb), T(kLeastArea * kLeastArea));
+  plane.parallel = area2 <= least;
+  const T area = Sqrt(Max(area2, least)), a = Sqrt(Max(aa, T(kLeastEdge * kLeastEdge)));
   const T inverse_area = T(1.0) / area;
   plane.inverse_a = T(1.0) / a;
   plane.inverse_b = a * inverse_area;
   plane.normal = inverse_area * c;
   plane.t0 = plane.inverse_a * e0;
   plane.t1 = Cross(plane.normal, plane.t0);
-  plane.alpha = Dot(plane.t0, e1) * plane.inverse_a;
-  // From the in-plane dual basis: the printed quotients cancel like 1/sin^2.
-  plane.beta = Dot(Cross(e1, plane.normal), e2) * inverse_area;
-  plane.gamma = Dot(Cross(plane.normal, e0), e2) * inverse_area;
+  const T along = Dot(plane.t0, e1);
+  plane.alpha = along * plane.inverse_a;
+  // By the in-plane dual basis: the printed quotients cancel like 1/sin^2. On t0 and t1, e1 is
+  // (along, b) and e2 is (x, y).
+  const T b = area * plane.inverse_a, x = Dot(plane.t0, e2), y = Dot(plane.t1, e2);
+  plane.beta = MulAdd(b, x, -(along * y)) * inverse_area;
+  plane.gamma = y * plane.inverse_b;
   return plane;
 }
 
@@ -120,17 +131,28 @@ DEFINITE_INLINE Vec3<T> AxisOff(const Vec3<T>& n) {
   return axis;
 }
 
+// Rows of the frame map in such a plane, Eq. 19: c_i as a sum of edges.
+template <class T>
+struct PlaneRows {
+  Vec3<T> c0, c1, c2;
+};
+template <class T>
+DEFINITE_INLINE PlaneRows<T> PlaneRowsOf(const T& alpha, const T& beta, const T& gamma) {
+  return {{T(1.0), T(0.0), T(0.0)}, {-alpha, T(1.0), T(0.0)}, {-beta, -gamma, T(1.0)}};
+}
+
 // A frame in the plane of e0 and e1, whose normal is `sign` times the plane's: both tangents free.
 template <class Stencil, class T>
 DEFINITE_INLINE void SetPlane(const Plane<T>& plane, const Edges<T>& edges, const T& sign,
-                              CollisionFrame<T, 4, 2>& f) {
+                              CollisionFrame<T, Stencil, 2>& f) {
+  const PlaneRows<T> rows = PlaneRowsOf(plane.alpha, plane.beta, plane.gamma);
   f.n = sign * plane.normal;
   f.l = Dot(f.n, edges.e2);
-  f.w = Stencil::Row2(plane.beta, plane.gamma);
+  f.w = rows.c2;
   f.t[0] = plane.t0;
   f.t[1] = plane.t1;
-  f.rows[0] = Stencil::template Row0<T>();
-  f.rows[1] = Stencil::Row1(plane.alpha);
+  f.rows[0] = rows.c0;
+  f.rows[1] = rows.c1;
   f.inverse_length[0] = plane.inverse_a;
   f.inverse_length[1] = plane.inverse_b;
   f.region = T(0.0);
@@ -152,8 +174,8 @@ struct FrameModes {
 
 // The modes of psi(l): psi'' first, then one that is kept for each tangent, then one that is
 // dropped for each that is not fixed. psi1 is psi'/unit and at most 0 (a penalty only repels).
-template <Part kPart, Tangents kTangents, class T, int kVertices, int kSlots>
-DEFINITE_INLINE auto PairModes(const CollisionFrame<T, kVertices, kSlots>& f, const T& psi1,
+template <Part kPart, Tangents kTangents, class T, class Stencil, int kSlots>
+DEFINITE_INLINE auto PairModes(const CollisionFrame<T, Stencil, kSlots>& f, const T& psi1,
                                const T& psi2) {
   constexpr int kTurning =
       (kTangents.of[0] != Tangent::kFixed) + (kTangents.of[1] != Tangent::kFixed);
@@ -193,30 +215,32 @@ DEFINITE_INLINE auto PairModes(const CollisionFrame<T, kVertices, kSlots>& f, co
   return modes;
 }
 
-// In x: q -> S^T q, block j is sigma S_ij n + w_j t.
-template <class Stencil, class T, int kSlots, int K, bool kTurning>
-DEFINITE_INLINE auto PullBack(const CollisionFrame<T, Stencil::kVertices, kSlots>& f,
+// In x: q -> S^T q, block j is sigma S_ij n + w_j t. kTriangular: the first row is that of the
+// first edge, as the paper's frame has it.
+template <bool kTriangular, class T, class Stencil, int kSlots, int K, bool kTurning>
+DEFINITE_INLINE auto PullBack(const CollisionFrame<T, Stencil, kSlots>& f,
                               const FrameModes<T, K, kTurning>& frame_modes) {
   FramedModes<T, Stencil, K, kTurning> modes;
-  modes.w = OverEdges<Stencil>(f.w, 1.0);
+  modes.w = f.w;
   modes.n = f.n;
 #pragma GCC unroll 8
   for (int m = 0; m < K; ++m) {
     const FrameMode<T>& q = frame_modes.mode[m];
     modes.lambda[m] = q.lambda;
     modes.t[m] = q.tangent;
-    modes.turns[m] = q.slot >= 0;
-    if (q.slot >= 0) modes.r[m] = OverEdges<Stencil>(q.sigma * f.rows[q.slot], 0.0);
+    modes.turns[m] = q.slot >= 0 && kTriangular ? q.slot + 1
+                     : q.slot >= 0              ? Stencil::kEdges - 1
+                                                : 0;
+    if (q.slot >= 0) modes.r[m] = q.sigma * f.rows[q.slot];
   }
   return modes;
 }
 
 // A Hessian in the frame coordinates c with the map S to them (Eq. 19): modes as stacked vectors.
-template <class T, int kVertices, int kSlots, int K, bool kTurning>
-auto ToFrameTerm(const CollisionFrame<T, kVertices, kSlots>& f,
+template <class T, class Stencil, int kSlots, int K, bool kTurning>
+auto ToFrameTerm(const CollisionFrame<T, Stencil, kSlots>& f,
                  const FrameModes<T, K, kTurning>& frame_modes) {
-  using Frame = CollisionFrame<T, kVertices, kSlots>;
-  FrameTerm<T, Frame::kCoordinates, Frame::kDofs, K> term;
+  FrameTerm<T, 3 * (kSlots + 1), Stencil::kDofs, K> term;
   for (int m = 0; m < K; ++m) {
     const FrameMode<T>& q = frame_modes.mode[m];
     term.modes.lambda[m] = q.lambda;
@@ -228,9 +252,9 @@ auto ToFrameTerm(const CollisionFrame<T, kVertices, kSlots>& f,
     }
   }
   for (int slot = 0; slot <= kSlots; ++slot) {
-    const Vec<T, kVertices>& row = slot < kSlots ? f.rows[slot] : f.w;
+    const auto row = OverVertices<Stencil>(slot < kSlots ? f.rows[slot] : f.w);
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < Frame::kDofs; ++j) {
+      for (int j = 0; j < Stencil::kDofs; ++j) {
         term.map[3 * slot + i][j] = j % 3 == i ? row[j / 3] : T(0.0);
       }
     }
@@ -241,63 +265,86 @@ auto ToFrameTerm(const CollisionFrame<T, kVertices, kSlots>& f,
 // The free tangents of a frame and their rows over lengths, rows[i] / len_i, turned so that the
 // rows are orthogonal: sum_i rows[i] t[i]^T / len_i = sum_k sigma[k] v[k] t[k]^T, the singular
 // value decomposition. sigma descends.
-template <class T, int kVertices, int kSlots>
+template <class T, class Stencil, int kSlots>
 struct TurnedRows {
-  Vec<T, kVertices> v[kSlots];  // unit rows; zero where the tangent is fixed
+  Vec<T, Stencil::kEdges> v[kSlots];  // over the vertices unit rows; zero where fixed
   T sigma[kSlots];
   Vec3<T> t[kSlots];
 };
 
-// kGramDeterminant: |rows[0]|^2 |rows[1]|^2 - (rows[0] . rows[1])^2, a constant of the stencil.
 // Source: docs/derivations.md, section 1.
-template <Tangents kTangents, int kGramDeterminant, class T, int kVertices, int kSlots>
-requires(kSlots > 0) DEFINITE_INLINE TurnedRows<T, kVertices, kSlots> TurnedRowsOf(
-    const CollisionFrame<T, kVertices, kSlots>& f) {
-  TurnedRows<T, kVertices, kSlots> turned;
+template <Tangents kTangents, class T, class Stencil, int kSlots>
+requires(kSlots > 0) DEFINITE_INLINE TurnedRows<T, Stencil, kSlots> TurnedRowsOf(
+    const CollisionFrame<T, Stencil, kSlots>& f) {
+  using Row = Vec<T, Stencil::kEdges>;
+  using internal::Shared;
+  constexpr double kNegligible = 1e-140;  // beside 1/16, the least of what is not zero
+  TurnedRows<T, Stencil, kSlots> turned;
   if constexpr (kSlots == 1) {
-    const T length2 = Dot(f.rows[0], f.rows[0]), inverse = T(1.0) / Sqrt(length2);
-    turned.v[0] = inverse * f.rows[0];
-    turned.sigma[0] = f.inverse_length[0] * (length2 * inverse);
+    const T length = ConstantRoot<T>::Of(Shared<Stencil>(0, 0));
+    turned.v[0] = {T(1.0) / length, T(0.0)};
+    turned.sigma[0] = f.inverse_length[0] * length;
     turned.t[0] = f.t[0];
   } else {
+    constexpr bool kByRegion = kTangents.of[0] == Tangent::kByRegion;
     T inverse[2] = {f.inverse_length[0], f.inverse_length[1]};
-    if constexpr (kTangents.of[0] == Tangent::kByRegion) {
+    const Row &row0 = f.rows[0], &row1 = f.rows[1];
+    T product00, product01, product11;  // of the rows
+    if constexpr (kByRegion) {
       for (int i = 0; i < 2; ++i) inverse[i] = Select(f.fixed[i], T(0.0), inverse[i]);
+      product00 = InnerProduct<Stencil>(row0, row0);
+      product01 = InnerProduct<Stencil>(row0, row1);
+      product11 = InnerProduct<Stencil>(row1, row1);
+    } else {
+      // Row 0 is the first edge, and row 1 the second less a part of the first.
+      const Row with1 = WithEdges<Stencil>(row1);
+      product00 = T(static_cast<double>(Shared<Stencil>(0, 0)));
+      product01 = with1[0];
+      product11 = MulAdd(row1[0], with1[0], with1[1]);
     }
-    const Vec<T, kVertices> g0 = inverse[0] * f.rows[0], g1 = inverse[1] * f.rows[1];
-    const T m00 = Dot(g0, g0), m01 = Dot(g0, g1), m11 = Dot(g1, g1);
+    const T m00 = product00 * (inverse[0] * inverse[0]);
+    const T m01 = product01 * (inverse[0] * inverse[1]);
+    const T m11 = product11 * (inverse[1] * inverse[1]);
     const T half = T(0.5) * (m00 - m11);
     const T root = Sqrt(MulAdd(half, half, m01 * m01));
-    const T larger2 = T(0.5) * (m00 + m11) + root;
-    // None free, or one: then the smaller is zero, and its row too.
-    const T square = Select(larger2 <= T(0.0), T(1.0), larger2);
-    const T inverse_larger = T(1.0) / Sqrt(square);
-    const T area = ConstantRoot<T>::Of(kGramDeterminant) * (inverse[0] * inverse[1]);
-    turned.sigma[0] = larger2 * inverse_larger;
-    turned.sigma[1] = area * inverse_larger;  // from the determinant, without cancellation
-    // (c, s) belongs to the larger one.
-    const T along = Abs(half) + root;
-    const T norm2 = MulAdd(along, along, m01 * m01);
-    const T norm = T(1.0) / Sqrt(Select(norm2 <= T(0.0), T(1.0), norm2));
-    const T cosine = Select(norm2 <= T(0.0), T(1.0), along * norm), sine = m01 * norm;
+    const T larger2 = MulAdd(T(0.5), m00 + m11, root);
+    turned.sigma[0] = Sqrt(Max(larger2, T(kNegligible)));
+    const T inverse_larger = T(1.0) / turned.sigma[0];
+    // The smaller from the determinant, without cancellation; zero if one is fixed.
+    const T area = ConstantRoot<T>::Of(internal::GramDeterminant<Stencil>(2)),
+            inverse_area = T(1.0) / area;
+    turned.sigma[1] = (area * (inverse[0] * inverse[1])) * inverse_larger;
+    // (c, s) belongs to the larger one; both are as large if `along` is nothing.
+    const T along = Max(Abs(half) + root, T(kNegligible));
+    const T norm = T(1.0) / Sqrt(MulAdd(along, along, m01 * m01));
+    const T cosine = along * norm, sine = m01 * norm;
     const auto swapped = half < T(0.0);
     const T c = Select(swapped, sine, cosine), s = Select(swapped, cosine, sine);
     turned.t[0] = c * f.t[0] + s * f.t[1];
     turned.t[1] = c * f.t[1] - s * f.t[0];
-    turned.v[0] = inverse_larger * (c * g0 + s * g1);
-    const T inverse_smaller = turned.sigma[0] / Select(area <= T(0.0), T(1.0), area);
-    turned.v[1] = inverse_smaller * (c * g1 - s * g0);
+    const T of0 = inverse_larger * (c * inverse[0]), of1 = inverse_larger * (s * inverse[1]);
+    if constexpr (kByRegion) {
+      turned.v[0] = of0 * row0 + of1 * row1;
+    } else {
+      turned.v[0] = {MulAdd(of1, row1[0], of0), of1, T(0.0)};
+    }
+    // Normal to it, in the plane of the two edges.
+    const Row with = WithEdges<Stencil>(turned.v[0]);
+    turned.v[1] = {-(inverse_area * with[1]), inverse_area * with[0], T(0.0)};
+    if constexpr (kByRegion) {
+      for (int e = 0; e < 2; ++e) turned.v[1][e] = Select(f.fixed[1], T(0.0), turned.v[1][e]);
+    }
   }
   return turned;
 }
 
 // The same geometric term in orthogonal vectors of x: as a frame whose rows are as long as w.
-template <Tangents kTangents, int kGramDeterminant, class T, int kVertices, int kSlots>
-DEFINITE_INLINE CollisionFrame<T, kVertices, kSlots> TurnedInX(
-    CollisionFrame<T, kVertices, kSlots> f) {
+template <Tangents kTangents, class T, class Stencil, int kSlots>
+DEFINITE_INLINE void TurnInX(CollisionFrame<T, Stencil, kSlots>& f) {
   if constexpr (kTangents.of[0] != Tangent::kFixed) {
-    const auto turned = TurnedRowsOf<kTangents, kGramDeterminant>(f);
-    const T width2 = Dot(f.w, f.w), inverse_width = T(1.0) / Sqrt(width2);
+    const auto turned = TurnedRowsOf<kTangents>(f);
+    const auto w = OverVertices<Stencil>(f.w);
+    const T width2 = Dot(w, w), inverse_width = T(1.0) / Sqrt(width2);
 #pragma GCC unroll 2
     for (int k = 0; k < kSlots; ++k) {
       f.rows[k] = (width2 * inverse_width) * turned.v[k];
@@ -305,7 +352,6 @@ DEFINITE_INLINE CollisionFrame<T, kVertices, kSlots> TurnedInX(
       f.t[k] = turned.t[k];
     }
   }
-  return f;
 }
 
 }  // namespace definite

@@ -17,19 +17,21 @@
 
 namespace definite {
 
-// What is left of w beside the rows v of a frame. If both slots are free these span all rows that
-// sum to zero but one, and the rest is a constant of the stencil: a difference would lose digits
-// where the foot point is far away.
-template <class Stencil, bool kConstant, class T, int kVertices, int kSlots>
-DEFINITE_INLINE Vec<T, kVertices> RestOfRow(const Vec<T, kVertices>& w,
-                                            const Vec<T, kVertices> (&v)[kSlots],
-                                            const T (&s)[kSlots]) {
+// The square of what is left of w beside the rows v of a frame. If both slots are free these span
+// all rows that sum to zero but one, and it is a constant of the stencil: a difference would lose
+// digits where the foot point is far away.
+template <class Stencil, bool kConstant, class T, int kSlots>
+DEFINITE_INLINE T RestOfRow(const Vec<T, Stencil::kEdges>& w,
+                            const Vec<T, Stencil::kEdges> (&v)[kSlots], const T (&s)[kSlots]) {
   if constexpr (kConstant) {
-    return Stencil::template RestRow<T>();
+    constexpr int kLast = Stencil::kEdges - 1;
+    return T(double{internal::GramDeterminant<Stencil>(kLast + 1)}) /
+           T(double{internal::GramDeterminant<Stencil>(kLast)});
   } else {
-    Vec<T, kVertices> rest = w;
+    auto rest = w;
     for (int k = 0; k < kSlots; ++k) rest = rest - s[k] * v[k];
-    return rest;
+    const auto over_vertices = OverVertices<Stencil>(rest);
+    return Dot(over_vertices, over_vertices);
   }
 }
 
@@ -136,8 +138,8 @@ class CollisionProjection {
   static constexpr int kRefinements = 5;
 
   CollisionProjection() = default;
-  DEFINITE_INLINE CollisionProjection(const CollisionFrame<T, kVertices, kSlots>& f,
-                                      const TurnedRows<T, kVertices, kSlots>& turned, const T& psi1,
+  DEFINITE_INLINE CollisionProjection(const CollisionFrame<T, Stencil, kSlots>& f,
+                                      const TurnedRows<T, Stencil, kSlots>& turned, const T& psi1,
                                       const T& psi2);
 
   // All but the last step with half the digits, which is all that it is good for.
@@ -181,14 +183,16 @@ class CollisionProjection {
 
 template <class FrameStencil, Tangents kTangents, int kSlots, class T>
 DEFINITE_INLINE CollisionProjection<FrameStencil, kTangents, kSlots, T>::CollisionProjection(
-    const CollisionFrame<T, kVertices, kSlots>& f, const TurnedRows<T, kVertices, kSlots>& turned,
+    const CollisionFrame<T, Stencil, kSlots>& f, const TurnedRows<T, Stencil, kSlots>& turned,
     const T& psi1, const T& psi2) {
-  // Below these a number is replaced by them: the Hessian changes by less than a rounding error,
-  // and no pole has weight zero or meets another one.
+  // Below these a number is replaced by them: the Hessian changes by far less than a rounding
+  // error, even of what is left of it, and no pole has weight zero or meets another one.
   constexpr double kLeastBlock = 1e-30, kLeastCurvature = 1e-34, kLeastCosine = 1e-17;
   constexpr double kApart = 0x1p-50;
 
-  const T width2 = Dot(f.w, f.w), inverse_width = T(1.0) / Sqrt(width2);
+  w_ = f.w;
+  const auto w = OverVertices<Stencil>(f.w);
+  const T width2 = Dot(w, w), inverse_width = T(1.0) / Sqrt(width2);
   const T width = width2 * inverse_width;
   // The larger of the entries, as a power of two.
   const T slope0 = psi1 * turned.sigma[0];
@@ -202,7 +206,7 @@ DEFINITE_INLINE CollisionProjection<FrameStencil, kTangents, kSlots, T>::Collisi
   trace_ = h_.curvature * width2;
 #pragma GCC unroll 2
   for (int k = 0; k < kSlots; ++k) {
-    h_.s[k] = Dot(f.w, turned.v[k]);
+    h_.s[k] = Dot(w_, WithEdges<Stencil>(turned.v[k]));
     h_.s[k] = Select(Abs(h_.s[k]) < T(kLeastCosine), T(kLeastCosine), h_.s[k]);
     const T slope = (psi1 * turned.sigma[k]) * inverse_unit;
     h_.a[k] = -slope * (f.l * turned.sigma[k]);
@@ -213,7 +217,7 @@ DEFINITE_INLINE CollisionProjection<FrameStencil, kTangents, kSlots, T>::Collisi
     const T half = T(0.5) * h_.a[k];
     root[k] = Sqrt(MulAdd(half, half, h_.b2[k]));
     larger[k] = Abs(half) + root[k];
-    v_[k] = OverEdges<Stencil>(turned.v[k], 0.0);
+    v_[k] = turned.v[k];
     u_[k] = inverse_width * turned.t[k];
   }
 #pragma GCC unroll 2
@@ -229,8 +233,7 @@ DEFINITE_INLINE CollisionProjection<FrameStencil, kTangents, kSlots, T>::Collisi
     h_.equation.weight[k] = weight * minus;
     h_.equation.weight[kPoles - 1 - k] = weight * plus;
   }
-  const Vec<T, kVertices> rest = RestOfRow<Stencil, !kByRegion>(f.w, turned.v, h_.s);
-  h_.rest2 = Dot(rest, rest);
+  h_.rest2 = RestOfRow<Stencil, !kByRegion>(f.w, turned.v, h_.s);
   d[kSlots] = T(0.0);
   h_.equation.weight[kSlots] = h_.curvature * h_.rest2;
   if constexpr (kSlots == 2) {
@@ -243,13 +246,12 @@ DEFINITE_INLINE CollisionProjection<FrameStencil, kTangents, kSlots, T>::Collisi
 #pragma GCC unroll 2
   for (int k = 0; k < kSlots; ++k) low_root_[k] = LowOf(T(0.5) * (d[k] + d[k + 1]));
 
-  w_ = OverEdges<Stencil>(f.w, 1.0);
   n_ = f.n;
 #pragma GCC unroll 2
   for (int i = 0; i < kFixed; ++i) {
     const int k = 2 - kFixed + i;
     const T lambda = psi1 / f.l;
-    fixed_weight_[i] = Select(lambda < T(0.0), T(0.0), lambda);
+    fixed_weight_[i] = Max(T(0.0), lambda);
     if constexpr (kByRegion) {
       fixed_weight_[i] = Select(f.fixed[k], fixed_weight_[i], T(0.0));
       fixed_[i] = turned.t[k];

@@ -20,8 +20,8 @@ namespace definite {
 // c0 = a t0, c1 = b t1, c2 = l n, unit vectors. b may be negative: t0 x t1 = normal.
 template <class T>
 struct MollifiedFrame {
-  CollisionFrame<T, 4, 2> length;
-  Vec<T, 4> row0, row1;  // of c0 and c1 over the vertices; that of c2 is length.w
+  CollisionFrame<T, EdgeEdge, 2> length;
+  Vec3<T> row0, row1;  // of c0 and c1 over the edges; that of c2 is length.w
   T a, b, inverse_a;
   Vec3<T> t0, t1, normal;
   // normal = cosine along + sine across, t1 = sine along - cosine across; `along` is n where the
@@ -66,11 +66,10 @@ DEFINITE_INLINE MollifiedFrame<T> MollifiedFrameOf(const Vec<T, 12>& x, const T&
 
   const auto at_end = f.fixed[1];  // not both points inside
   const auto is_vertices = f.fixed[0];
-  const T along_b = Select(is_vertices, T(0.0), Select(f.rows[0][2] < T(0.0), T(1.0), T(0.0)));
+  const T along_b = Select(is_vertices, T(0.0), f.rows[0][1]);
   const auto swapped = along_b > T(0.0);
   const Vec3<T> first = SelectAll(swapped, e1, e0), second = SelectAll(swapped, e0, e1);
-  const Vec<T, 4> of_a = {T(-1.0), T(1.0), T(0.0), T(0.0)};
-  const Vec<T, 4> of_b = {T(0.0), T(0.0), T(-1.0), T(1.0)};
+  const Vec3<T> of_a = {T(1.0), T(0.0), T(0.0)}, of_b = {T(0.0), T(1.0), T(0.0)};
 
   frame.a = Sqrt(Select(f.outside, T(1.0), Dot(first, first)));
   frame.inverse_a = T(1.0) / frame.a;
@@ -244,13 +243,14 @@ DEFINITE_INLINE Modes<T, 9, 9> EigenModes(const MollifiedFrame<T>& frame,
 template <class T, int K>
 DEFINITE_INLINE Modes<T, 12, K> PullBack(const MollifiedFrame<T>& frame,
                                          const Modes<T, 9, K>& modes) {
+  const auto row0 = OverVertices<EdgeEdge>(frame.row0), row1 = OverVertices<EdgeEdge>(frame.row1);
+  const auto row2 = OverVertices<EdgeEdge>(frame.length.w);
   Modes<T, 12, K> pulled;
 #pragma GCC unroll 16
   for (int m = 0; m < K; ++m) {
     pulled.lambda[m] = modes.lambda[m];
-    pulled.v[m] = AddKron(
-        AddKron(Kron(frame.length.w, Vertex(modes.v[m], 2)), frame.row1, Vertex(modes.v[m], 1)),
-        frame.row0, Vertex(modes.v[m], 0));
+    pulled.v[m] = AddKron(AddKron(Kron(row2, Vertex(modes.v[m], 2)), row1, Vertex(modes.v[m], 1)),
+                          row0, Vertex(modes.v[m], 0));
   }
   return pulled;
 }

@@ -24,11 +24,10 @@ struct Signed {
   static constexpr std::string_view kSide =
       "sign of the length: -1 flips it, +1 and 0 keep the triple product's";
   static constexpr Tangents kTangents = kBothFree;
-  static constexpr int kGramDeterminant = Stencil::kGramDeterminant;
 
   template <class T>
-  static DEFINITE_INLINE CollisionFrame<T, 4, 2> FrameOf(const Vec<T, 12>& x, const T& side) {
-    CollisionFrame<T, 4, 2> f;
+  static DEFINITE_INLINE CollisionFrame<T, Stencil, 2> FrameOf(const Vec<T, 12>& x, const T& side) {
+    CollisionFrame<T, Stencil, 2> f;
     Edges<T> edges = Stencil::EdgesOf(x);
     Prescale(f, edges);
     const Plane<T> plane = PlaneOf(edges);
@@ -43,7 +42,7 @@ struct Signed {
   struct PrintedFrame {
     T l;
     Vec3<T> c0, c1, c2;    // e0perp, e1perp, e2perp: the columns of C, Eq. 2
-    Vec<T, 4> s0, s1, s2;  // rows of the frame map, Eq. 19
+    Vec<T, 4> s0, s1, s2;  // rows of the frame map over the vertices, Eq. 19
   };
 
   template <class T>
@@ -61,9 +60,10 @@ struct Signed {
     f.c0 = e0;
     f.c1 = e1 - alpha * e0;
     f.c2 = (e2 - beta * e0) - gamma * e1;
-    f.s0 = Stencil::template Row0<T>();
-    f.s1 = Stencil::Row1(alpha);
-    f.s2 = Stencil::Row2(beta, gamma);
+    const PlaneRows<T> rows = PlaneRowsOf(alpha, beta, gamma);
+    f.s0 = OverVertices<Stencil>(rows.c0);
+    f.s1 = OverVertices<Stencil>(rows.c1);
+    f.s2 = OverVertices<Stencil>(rows.c2);
     return f;
   }
 

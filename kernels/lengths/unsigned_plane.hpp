@@ -28,11 +28,10 @@ struct UnsignedPlane {
   static constexpr std::string_view kSide =
       "+1 outside, -1 penetrating, 0 by the sign of the triple product";
   static constexpr Tangents kTangents = kBothFree;
-  static constexpr int kGramDeterminant = Stencil::kGramDeterminant;
 
   template <class T>
-  static DEFINITE_INLINE CollisionFrame<T, 4, 2> FrameOf(const Vec<T, 12>& x, const T& side) {
-    CollisionFrame<T, 4, 2> f;
+  static DEFINITE_INLINE CollisionFrame<T, Stencil, 2> FrameOf(const Vec<T, 12>& x, const T& side) {
+    CollisionFrame<T, Stencil, 2> f;
     Edges<T> edges = Stencil::EdgesOf(x);
     Prescale(f, edges);
     const Plane<T> plane = PlaneOf(edges);
@@ -47,7 +46,7 @@ struct UnsignedPlane {
 
   // The frame set: psi'', then what each tangent keeps and drops.
   template <Part kPart, class T>
-  static DEFINITE_INLINE auto SplitModes(const CollisionFrame<T, 4, 2>& f, const T& psi1,
+  static DEFINITE_INLINE auto SplitModes(const CollisionFrame<T, Stencil, 2>& f, const T& psi1,
                                          const T& psi2) {
     constexpr int kCount = kPart == Part::kCurvature ? 1 : kPart == Part::kPositive ? 3 : 5;
     FrameModes<T, kCount, kPart != Part::kCurvature> modes;
@@ -70,7 +69,7 @@ struct UnsignedPlane {
   // D = dc/dx - S, Eq. 20: how the frame weights change. Free of units; zero outside the domain.
   template <class T>
   static void Remainder(const Vec<T, 12>& x, const MaskOf<T>& outside, T (&d)[9][12]) {
-    CollisionFrame<T, 4, 2> unit;
+    CollisionFrame<T, Stencil, 2> unit;
     Edges<T> edges = Stencil::EdgesOf(x);
     Prescale(unit, edges);
     const auto& [e0, e1, e2] = edges;
@@ -79,8 +78,9 @@ struct UnsignedPlane {
     const T b2 = Dot(c1, c1);
     const T ga = Dot(c1, e2) / b2, be = (Dot(e0, e2) - ga * Dot(e0, e1)) / a2;
     const Vec3<T> c2 = (e2 - be * e0) - ga * e1;
-    const Vec<T, 4> s0 = Stencil::template Row0<T>(), s1 = Stencil::Row1(al),
-                    s2 = Stencil::Row2(be, ga);
+    const PlaneRows<T> rows = PlaneRowsOf(al, be, ga);
+    const Vec<T, 4> s0 = OverVertices<Stencil>(rows.c0), s1 = OverVertices<Stencil>(rows.c1),
+                    s2 = OverVertices<Stencil>(rows.c2);
     const Vec<T, 12> al_x = (T(1.0) / a2) * (Kron(s0, c1) + Kron(s1, e0));
     const Vec<T, 12> ga_x = (T(1.0) / b2) * (Kron(s1, c2) + Kron(s2, c1));
     const Vec<T, 12> be_x = (T(1.0) / a2) * (Kron(s0, c2) + Kron(s2, e0)) - al * ga_x;

@@ -16,11 +16,10 @@ struct UnsignedPoints {
   static constexpr std::string_view kSource = "vertex-vertex: docs/derivations.md, section 3";
   static constexpr std::string_view kSide = "-1 penetrating, +1 and 0 outside";
   static constexpr Tangents kTangents = kBothFixed;
-  static constexpr int kGramDeterminant = 0;
 
   template <class T>
-  static DEFINITE_INLINE CollisionFrame<T, 2, 0> FrameOf(const Vec<T, 6>& x, const T& side) {
-    CollisionFrame<T, 2, 0> f;
+  static DEFINITE_INLINE CollisionFrame<T, Stencil, 0> FrameOf(const Vec<T, 6>& x, const T& side) {
+    CollisionFrame<T, Stencil, 0> f;
     Vec3<T> d = Vertex(x, 1) - Vertex(x, 0);
     Prescale(f, d);
     T u2 = Dot(d, d);
@@ -33,7 +32,7 @@ struct UnsignedPoints {
     const Vec3<T> t = axis - Dot(axis, f.n) * f.n;
     f.t[0] = (T(1.0) / Sqrt(Dot(t, t))) * t;
     f.t[1] = Cross(f.n, f.t[0]);
-    f.w = {T(-1.0), T(1.0)};
+    f.w = {T(1.0)};
     f.region = T(0.0);
     return f;
   }

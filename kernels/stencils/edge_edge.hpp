@@ -28,30 +28,6 @@ struct EdgeEdge {
     const Vec3<T> x0 = Vertex(x, 0), x2 = Vertex(x, 2);
     return {Vertex(x, 1) - x0, Vertex(x, 3) - x2, x2 - x0};
   }
-
-  // |Row0|^2 |Row1|^2 - (Row0 . Row1)^2, whatever alpha.
-  static constexpr int kGramDeterminant = 4;
-
-  // What no choice of Row0 and Row1 takes from Row2: its part along the one row that sums to zero
-  // and is orthogonal to both.
-  template <class T>
-  static DEFINITE_INLINE Vec<T, 4> RestRow() {
-    return {T(-0.5), T(-0.5), T(0.5), T(0.5)};
-  }
-
-  // Rows of the frame map over the vertices, Eq. 19: c_i = sum_j S_ij x_j.
-  template <class T>
-  static DEFINITE_INLINE Vec<T, 4> Row0() {
-    return {T(-1.0), T(1.0), T(0.0), T(0.0)};
-  }
-  template <class T>
-  static DEFINITE_INLINE Vec<T, 4> Row1(const T& alpha) {
-    return {alpha, -alpha, T(-1.0), T(1.0)};
-  }
-  template <class T>
-  static DEFINITE_INLINE Vec<T, 4> Row2(const T& beta, const T& gamma) {
-    return {beta - T(1.0), -beta, T(1.0) + gamma, -gamma};
-  }
 };
 
 }  // namespace definite

@@ -20,12 +20,6 @@ struct VertexEdge {
   // Edges x2 - x1 and x0 - x1.
   static constexpr int kEdges = 2;
   static constexpr int kInEdges[3][2] = {{0, 1}, {-1, -1}, {1, 0}};
-
-  // The part of (1, beta - 1, -beta), whatever beta, that is orthogonal to the edge's (0, -1, 1).
-  template <class T>
-  static DEFINITE_INLINE Vec<T, 3> RestRow() {
-    return {T(1.0), T(-0.5), T(-0.5)};
-  }
 };
 
 }  // namespace definite

@@ -29,31 +29,6 @@ struct VertexFace {
     const Vec3<T> x2 = Vertex(x, 2);
     return {Vertex(x, 1) - x2, Vertex(x, 3) - x2, Vertex(x, 0) - x2};
   }
-
-  // |Row0|^2 |Row1|^2 - (Row0 . Row1)^2, whatever alpha.
-  static constexpr int kGramDeterminant = 3;
-
-  // What no choice of Row0 and Row1 takes from Row2: its part along the one row that sums to zero
-  // and is orthogonal to both.
-  template <class T>
-  static DEFINITE_INLINE Vec<T, 4> RestRow() {
-    const T third = T(-1.0) / T(3.0);
-    return {T(1.0), third, third, third};
-  }
-
-  // Rows of the frame map over the vertices, Eq. 19: c_i = sum_j S_ij x_j.
-  template <class T>
-  static DEFINITE_INLINE Vec<T, 4> Row0() {
-    return {T(0.0), T(1.0), T(-1.0), T(0.0)};
-  }
-  template <class T>
-  static DEFINITE_INLINE Vec<T, 4> Row1(const T& alpha) {
-    return {T(0.0), -alpha, alpha - T(1.0), T(1.0)};
-  }
-  template <class T>
-  static DEFINITE_INLINE Vec<T, 4> Row2(const T& beta, const T& gamma) {
-    return {T(1.0), -beta, (beta + gamma) - T(1.0), -gamma};
-  }
 };
 
 }  // namespace definite
