@@ -10,6 +10,7 @@
 
 #include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/examine.hpp"
+#include "benchmarks/harness/sampling/random.hpp"
 
 namespace definite {
 namespace {
@@ -81,6 +82,8 @@ std::vector<Family> Families() {
       {"height 1e8", face, Over(ex, {0.5, 1e8}, 0.3, 0.3, 0.05), 0.1, 0},
       {"foot point 1e2 edges away", face, Turned(Over(ex, e1, 1e2, -70, 0.05)), 0.1, 3e-13},
       {"foot point 1e6 edges away", face, Turned(Over(ex, e1, 1e6, -7e5, 0.05)), 0.1, 7e-9, 1e-11},
+      {"an edge of 1e-10", face, Over(ex, {0.3e-10, 1e-10}, 0.3, 0.4, 0.05), 0.1, 0},
+      {"an edge of 1e-10 gone through", face, Over(ex, {0.3e-10, 1e-10}, 0.3, 0.4, -0.05), 0.1, 1},
       {"1e3 deep", face, Over(ex, e1, 0.3, 0.4, -1e3), 0.1, 8e-8},
       {"1e8 deep", face, Over(ex, e1, 0.3, 0.4, -1e8), 0.1, 1},
   };
@@ -148,6 +151,78 @@ INSTANTIATE_TEST_SUITE_P(Families, Degenerate, ::testing::ValuesIn(Families()),
                              if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
                            }
                            return name + "_" + std::to_string(family.index);
+                         });
+
+// Pairs with a short edge, nearly parallel edges, or a small distance, by up to thirty orders of
+// magnitude.
+Numbers AlmostDegenerate(std::uint64_t index) {
+  Draws draws(StreamId("almost degenerate pairs"), 1, index);
+  Numbers x(12);
+  for (double& v : x) v = draws.Normal();
+  const double small = std::pow(10.0, -30 * draws.Uniform());
+  for (std::size_t k = 0; k < 3; ++k) {
+    x[6 + k] = 0;
+    switch (index % 5) {
+      case 0:
+        x[3 + k] *= small;
+        break;
+      case 1:
+        x[9 + k] *= small;
+        break;
+      case 2:
+        x[9 + k] = 0.7 * x[3 + k] + small * x[9 + k];
+        break;
+      case 3:
+        x[k] *= small;
+        break;
+      case 4:
+        x[k] = 0;
+        x[3 + k] *= small;
+        x[6 + k] = index / 5 % 2 == 0 ? 0 : small;
+        break;
+    }
+  }
+  return x;
+}
+
+class AlmostDegeneratePairs : public ::testing::TestWithParam<const EnergyRow*> {};
+
+TEST_P(AlmostDegeneratePairs, GiveFinitePsdMatricesInTheDefaultRows) {
+  constexpr std::uint64_t kPairs = 5000;
+  for (const char* filter : {"analytic", "split", "nearest", "gauss_newton"}) {
+    const KernelRow* row = FindKernel(GetParam()->name + "/" + filter + "/f64");
+    if (!row) continue;
+    int not_finite = 0, not_psd = 0;
+    std::uint64_t first = kPairs;
+    for (std::uint64_t i = 0; i < kPairs; ++i) {
+      const Numbers x = AlmostDegenerate(i);
+      Numbers p, f(static_cast<std::size_t>(row->outputs));
+      for (const Parameter& parameter : GetParam()->parameters) p.push_back(parameter.value);
+      p[1] = i % 2 == 0 ? 10 : 0.1;           // eps
+      p[2] = static_cast<double>(i % 3) - 1;  // side
+      RunOne(*row, x.data(), p.data(), f.data());
+      const bool finite = AllFinite(f), psd = finite && IsPsd(f);
+      not_finite += !finite;
+      not_psd += finite && !psd;
+      if (!psd) first = std::min(first, i);
+    }
+    EXPECT_EQ(not_finite, 0) << filter << ", first pair " << first;
+    EXPECT_EQ(not_psd, 0) << filter << ", first pair " << first;
+  }
+}
+
+std::vector<const EnergyRow*> Pairs() {
+  std::vector<const EnergyRow*> pairs;
+  for (const EnergyRow& energy : AllEnergies()) {
+    if (energy.name.starts_with("collision/")) pairs.push_back(&energy);
+  }
+  return pairs;
+}
+INSTANTIATE_TEST_SUITE_P(Registry, AlmostDegeneratePairs, ::testing::ValuesIn(Pairs()),
+                         [](const auto& energy) {
+                           std::string name = energy.param->name;
+                           std::ranges::replace(name, '/', '_');
+                           return name;
                          });
 
 }  // namespace

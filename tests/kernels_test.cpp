@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <boost/multiprecision/float128.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "all_filters.hpp"
 #include "benchmarks/hand_fused.hpp"
@@ -359,6 +362,74 @@ TEST(Lanes, ComputeWhatScalarsDo) {
   expect(Select((x <= y) | (x > L(0.0)), x, y),
          [](double p, double q) { return p <= q || p > 0 ? p : q; });
   expect(Select(x >= y, x, y), [](double p, double q) { return p >= q ? p : q; });
+}
+
+TEST(Lanes, TakeTheLargerOfNaNsAndZerosThatScalarsTake) {
+  using L = Lanes<double, kNativeLanes>;
+  const double values[] = {1.5,
+                           -2.5,
+                           0.0,
+                           -0.0,
+                           std::numeric_limits<double>::infinity(),
+                           std::numeric_limits<double>::quiet_NaN()};
+  for (double p : values) {
+    for (double q : values) {
+      for (const auto& [lanes, scalar] :
+           {std::pair(Max(L(p), L(q)), Max(p, q)), std::pair(Min(L(p), L(q)), Min(p, q))}) {
+        double out[kNativeLanes];
+        lanes.Store(out);
+        for (double v : out) {
+          EXPECT_EQ(std::bit_cast<std::uint64_t>(v), std::bit_cast<std::uint64_t>(scalar))
+              << p << " and " << q;
+        }
+      }
+    }
+  }
+}
+
+TEST(Lanes, SayWhetherAConditionHoldsInAnyOfThem) {
+  using L = Lanes<double, kNativeLanes>;
+  double numbers[kNativeLanes] = {};
+  EXPECT_FALSE(Any(L::Load(numbers) > L(0.0)));
+  for (double& number : numbers) {
+    number = 1;
+    EXPECT_TRUE(Any(L::Load(numbers) > L(0.0)));
+    number = 0;
+  }
+}
+
+TEST(Pair, ComputesWhatItsHalvesWould) {
+  using L = Lanes<double, kNativeLanes>;
+  using P = Pair<L>;
+  const double xs[] = {1.25, 7.5}, ys[] = {3.5, 0.75}, zs[] = {-0.5, 11};
+  const P x{L(xs[0]), L(xs[1])}, y{L(ys[0]), L(ys[1])}, z{L(zs[0]), L(zs[1])};
+  const auto expect = [&](const P& pair, auto scalar) {
+    double out[2][kNativeLanes];
+    pair.a.Store(out[0]);
+    pair.b.Store(out[1]);
+    for (int half : {0, 1}) {
+      for (double v : out[half]) EXPECT_EQ(v, scalar(xs[half], ys[half], zs[half]));
+    }
+  };
+  expect(x + y, [](double p, double q, double) { return p + q; });
+  expect(x - y, [](double p, double q, double) { return p - q; });
+  expect(x * y, [](double p, double q, double) { return p * q; });
+  expect(x / y, [](double p, double q, double) { return p / q; });
+  expect(-x, [](double p, double, double) { return -p; });
+  expect(MulAdd(x, y, z), [](double p, double q, double r) { return std::fma(p, q, r); });
+  expect(Sqrt(x), [](double p, double, double) { return std::sqrt(p); });
+  expect(Abs(z), [](double, double, double r) { return std::fabs(r); });
+  expect(Log(x), [](double p, double, double) { return Log(p); });
+  expect(Log1p(x), [](double p, double, double) { return Log1p(p); });
+  expect(Max(x, y), [](double p, double q, double) { return std::max(p, q); });
+  expect(Min(x, y), [](double p, double q, double) { return std::min(p, q); });
+  expect(InversePowerOfTwo(x), [](double p, double, double) { return InversePowerOfTwo(p); });
+  expect(Select((x < y) | (z > P(10.0)), x, z),
+         [](double p, double q, double r) { return p < q || r > 10 ? p : r; });
+  expect(Select((x >= y) | (z <= P(-10.0)), x, z),
+         [](double p, double q, double r) { return p >= q || r <= -10 ? p : r; });
+  EXPECT_TRUE(Any(x < y));
+  EXPECT_FALSE(Any(x < z - P(100.0)));
 }
 
 }  // namespace

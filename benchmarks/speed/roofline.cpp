@@ -66,7 +66,8 @@ void MeasureArithmetic(Roofline& roofline) {
     return c % 2 == 0 ? MulAdd(v, factor, term) : v + term;
   };
   roofline.fused = RateOf<10>(fused);
-  roofline.arithmetic = std::max(roofline.fused, RateOf<12>(mixed));
+  constexpr int kChains = kNativeLanes == 8 ? 24 : 14;  // twice as many registers
+  roofline.arithmetic = std::max(roofline.fused, RateOf<kChains>(mixed));
 }
 
 double StoreRate(Level level) {

@@ -108,7 +108,10 @@ Floor FloorOf(const KernelRow& row, const Batch& batch, const Roofline& roofline
   Floor floor;
   floor.counted = kCounted;
   floor.operations = sum;
-  floor.arithmetic = each(sum.Arithmetic()) / kNativeLanes / roofline.arithmetic;
+  // Where additions have units of their own, multiplications must still make do with theirs.
+  floor.arithmetic = std::max(each(sum.Arithmetic()) / roofline.arithmetic,
+                              each(sum.multiplications + sum.fused) / roofline.fused) /
+                     kNativeLanes;
   floor.division = each(sum.divisions) / kNativeLanes / roofline.divisions +
                    each(sum.roots) / kNativeLanes / roofline.roots;
   floor.stores = each(sum.stores) * sizeof(double) / roofline.Stores(level);
