@@ -23,4 +23,15 @@ Spectrum<double> EigenSpectrum(const Matrix<double>& a) {
   return spectrum;
 }
 
+Matrix<double> EigenvaluesOf(const Matrix<double>& a) {
+  const int n = a.rows;
+  if (!AllFinite(a)) return UndefinedSpectrum<double>(n).values;
+  const Eigen::Map<const Eigen::MatrixXd> view(a.entries.data(), n, n);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(view, Eigen::EigenvaluesOnly);
+  if (solver.info() != Eigen::Success) return JacobiSpectrum(a).values;
+  Matrix<double> values(n, 1);
+  for (int j = 0; j < n; ++j) values[j] = solver.eigenvalues()[j];
+  return values;
+}
+
 }  // namespace definite::reference

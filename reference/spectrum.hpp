@@ -94,6 +94,9 @@ Spectrum<T> JacobiSpectrum(Matrix<T> a) {
 // Eigen out of here).
 Spectrum<double> EigenSpectrum(const Matrix<double>& a);
 
+// Its values alone, which take a third of the time.
+Matrix<double> EigenvaluesOf(const Matrix<double>& a);
+
 // The solver of choice: Eigen where speed counts, Jacobi where truth does.
 template <class T>
 Spectrum<T> SpectrumOf(const Matrix<T>& a) {

@@ -595,7 +595,8 @@ class Sweeps(unittest.TestCase):
 
 class Speed(unittest.TestCase):
     WORDS = ("speed", "--kernels", ENERGY + "/analytic/f64x8*", "--kernels", ENERGY + "/numeric/f64",
-             "--kernels", ENERGY + "/gauss_newton/f64", "--ring", "L1", "--rounds", "3")
+             "--kernels", ENERGY + "/gauss_newton/f64", "--ring", "L1", "--rounds", "3",
+             "--job", "20000", "--elements", "3000")
 
     def test_its_json_has_each_row_with_its_ratios_and_floor(self):
         done = run(*self.WORDS, "--threads", "1", "--threads", "2", "--json", "-")
@@ -623,15 +624,37 @@ class Speed(unittest.TestCase):
                     "arithmetic", "division", "stores")))
                 self.assertEqual(floor["ns"], floor[floor["binds"] + "_ns"])
 
+        jobs = result["speed"]["jobs"]
+        self.assertEqual([(job["kernel"], job["threads"], job["count"]) for job in jobs],
+                         [(ENERGY + "/analytic/f64x8", threads, 20000) for threads in (1, 2)])
+        for job in jobs:
+            seconds = job["seconds"]
+            self.assertEqual(seconds["total"], seconds["draw"] + seconds["packed"])
+        assemblies = result["speed"]["assemblies"]
+        self.assertEqual([(one["kernel"], one["threads"], one["elements"], one["rounds"])
+                          for one in assemblies],
+                         [(ENERGY + "/analytic/f64x8", threads, 3000, 3) for threads in (1, 2)])
+        # Each of the 1500 vertices has a block, and each element at most six others.
+        self.assertTrue(1500 < assemblies[0]["blocks"] <= 1500 + 6 * 3000)
+
+    def test_jobs_and_assemblies_can_be_left_out(self):
+        done = run("speed", "--kernels", ENERGY + "/analytic/f64x8*", "--ring", "L1", "--threads", "1",
+                   "--rounds", "1", "--job", "0", "--elements", "0", "--json", "-")
+        speed = json.loads(done.stdout)["speed"]
+        self.assertEqual((speed["jobs"], speed["assemblies"]), ([], []))
+
     def test_its_table_fits_100_columns(self):
         done = run(*self.WORDS, "--threads", "1")
         self.assertIn("analytic/f64x8/applied", done.stdout)
+        self.assertIn("The whole job: 2e+04 configurations of active", done.stdout)
+        self.assertIn("Scatter-add: 3e+03 elements", done.stdout)
         self.assertEqual([line for line in done.stdout.splitlines()
                           if len(line) > 100 or line != line.rstrip()], [])
 
     def test_bad_words_are_rejected_by_name(self):
         for words, said in ((("--ring", "L3"), "--ring 'L3': expected L1, L2 or memory"),
-                            (("--threads", "0"), "--threads '0'"), (("--rounds", "x"), "--rounds 'x'")):
+                            (("--threads", "0"), "--threads '0'"), (("--rounds", "x"), "--rounds 'x'"),
+                            (("--job", "-1"), "--job '-1'"), (("--elements", "x"), "--elements 'x'")):
             done = run("speed", *words)
             self.assertEqual(done.returncode, 2)
             self.assertIn(said, done.stderr)

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -17,6 +19,7 @@ namespace definite {
 namespace {
 
 constexpr const char* kEnergy = "collision/vertex_face/signed/quadratic";
+constexpr const char* kOther = "collision/vertex_face/unsigned/quadratic";
 
 const KernelRow& Row(const std::string& filter) {
   return *FindKernel(std::string(kEnergy) + "/" + filter);
@@ -26,7 +29,7 @@ const KernelRow& Row(const std::string& filter) {
 SweepPlan Plan(std::uint64_t count, int threads) {
   SweepPlan plan;
   for (const KernelRow& row : AllKernels()) {
-    if (row.energy->stencil == "vertex_face") plan.rows.push_back(&row);
+    if (row.energy->name == kEnergy || row.energy->name == kOther) plan.rows.push_back(&row);
   }
   plan.distribution = FindDistribution("active");
   plan.count = count;
@@ -65,6 +68,50 @@ TEST(Figures, CallAMatrixPsdUpToTheRatioBound) {
   EXPECT_FALSE(IsPsd(Diagonal({-1, 0, 0, 0})));
   EXPECT_FALSE(IsPsd(Diagonal({1, std::nan(""), 0, 0})));
   EXPECT_FALSE(IsPsd(Diagonal({1, std::numeric_limits<double>::infinity(), 0, 0})));
+}
+
+TEST(Figures, MeasureATileLikeItsMatricesOneByOne) {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const int n : {2, 6, 9, 12}) {
+    const auto size = static_cast<std::size_t>(n * (n + 1) / 2);
+    std::vector<std::vector<double>> tiles(3), scalar(3);
+    for (std::size_t which = 0; which < 3; ++which) {
+      Draws draws(StreamId("measures"), which, static_cast<std::uint64_t>(n));
+      scalar[which].resize(size * kTile);
+      for (double& entry : scalar[which]) entry = draws.Uniform() - 0.5;
+      tiles[which].resize(size * kTile);
+    }
+    // PSD, zero, not finite, and of a norm that overflows.
+    std::vector<double>& f = scalar[0];
+    const auto matrix = [&](std::size_t i) { return f.begin() + static_cast<long>(i * size); };
+    for (std::size_t i : {0, 1, 2, 4}) std::fill_n(matrix(i), size, 0.0);
+    for (std::size_t k = 0, i = 0; i < static_cast<std::size_t>(n); ++i) {
+      matrix(0)[static_cast<long>(k)] = 1;
+      k += static_cast<std::size_t>(n) - i;
+    }
+    matrix(2)[1] = std::nan("");
+    matrix(3)[0] = inf;
+    matrix(4)[0] = 1e300;
+    for (std::size_t which = 0; which < 3; ++which) {
+      ToTiles(scalar[which].data(), static_cast<int>(size), kTile, tiles[which].data());
+    }
+    std::array<Measures, kTile> measures;
+    MeasureTile(n, tiles[0].data(), tiles[1].data(), tiles[2].data(), measures);
+    for (std::size_t i = 0; i < kTile; ++i) {
+      const auto one = [&](std::size_t which) {
+        return Packed(scalar[which]).subspan(i * size, size);
+      };
+      // In bits, for a NaN is not equal to itself.
+      const auto bits = [](double a) { return std::bit_cast<std::uint64_t>(std::abs(a)); };
+      EXPECT_EQ(bits(measures[i].norm), bits(FrobeniusNorm(one(0)))) << n << " " << i;
+      EXPECT_EQ(bits(measures[i].to_nearest), bits(FrobeniusDistance(one(0), one(1))));
+      EXPECT_EQ(bits(measures[i].to_exact), bits(FrobeniusDistance(one(0), one(2))));
+      EXPECT_EQ(measures[i].psd, IsPsd(one(0))) << n << " " << i;
+    }
+    EXPECT_TRUE(measures[0].psd);
+    EXPECT_TRUE(measures[1].psd);
+    for (std::size_t i = 2; i < 5; ++i) EXPECT_FALSE(measures[i].psd) << i;
+  }
 }
 
 TEST(Figures, KnowEigenvalues) {
@@ -258,6 +305,41 @@ TEST(CheckedPass, CountsEveryConfigurationOnce) {
       EXPECT_EQ(r.statistics.defined + r.statistics.verdicts[3], energy.statistics.active);
     }
   }
+}
+
+TEST(CheckedPass, LooksAtNumericRowsWhereDefinitionsAre) {
+  SweepPlan plan = Plan(1003, 2);
+  plan.rows = {&Row("numeric/f64"), &Row("analytic/f64"), &Row("analytic/f64x8")};
+  Progress progress(false);
+  const SweepResult all = RunSweep(plan, progress);
+  plan.samples = {
+      .definition = 101, .spectrum = 11, .truth = 0};  // every tenth, not in whole tiles
+  const SweepResult some = RunSweep(plan, progress);
+  const auto looked_at = [](const SweepResult& result, std::size_t r) {
+    std::uint64_t verdicts = 0;
+    for (std::uint64_t n : result.energies[0].rows[r].statistics.verdicts) verdicts += n;
+    return verdicts;
+  };
+  EXPECT_EQ(looked_at(all, 0), 1003u);
+  EXPECT_EQ(looked_at(some, 0), 101u);
+  EXPECT_EQ(some.energies[0].rows[0].statistics.defined, 101u);
+  for (std::size_t r : {1, 2}) {
+    EXPECT_EQ(looked_at(some, r), 1003u);
+    EXPECT_EQ(some.energies[0].rows[r].statistics.checksum,
+              all.energies[0].rows[r].statistics.checksum);
+  }
+  // What it is made of is right there, not just counted.
+  const auto worst = some.energies[0].rows[0].statistics.distance.Summarize();
+  EXPECT_LT(worst->max.value, 1e-9);
+  EXPECT_EQ(some.energies[0].rows[0].statistics.verdicts[0], 101u);
+}
+
+TEST(CheckedPass, TakesTheNearestMatrixFromTheFastestRowThatIsNotJudged) {
+  const auto nearest = [](std::vector<const KernelRow*> rows) {
+    return &Examiner(*rows[0]->energy, rows).NearestRow();
+  };
+  EXPECT_EQ(nearest({&Row("analytic/f64")}), &Row("nearest/f64x8"));
+  EXPECT_EQ(nearest({&Row("analytic/f64"), &Row("nearest/f64")}), &Row("numeric/f64"));
 }
 
 TEST(CheckedPass, CoversAPrefixWhenInterrupted) {

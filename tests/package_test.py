@@ -1,6 +1,6 @@
 """The installed kernels, from outside: python3 package_test.py CMAKE BUILD [options of CMake]
 
-BUILD is the folder to install from; of what it builds, only the library of the kernels is needed.
+BUILD is the folder to install from; of what it builds, only the libraries of the kernels are needed.
 The options configure tests/consumer.
 """
 
@@ -14,7 +14,7 @@ import unittest
 CMAKE, BUILD, *OPTIONS = sys.argv[1:]
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CONSUMER = ROOT / "tests/consumer"
-LIBRARY = "lib/libdefinite_kernels.a"
+LIBRARIES = {"lib/libdefinite_kernels.a", "lib/libdefinite_assembly.a"}
 PACKAGE = "lib/cmake/definite/"
 TIMEOUT = 300  # seconds; a sanitizer may be slow
 
@@ -44,7 +44,7 @@ class Package(unittest.TestCase):
                      if path.is_file()}
         cls.configure = (CMAKE, "-S", CONSUMER, f"-DCMAKE_PREFIX_PATH={cls.prefix}", *OPTIONS)
 
-    def test_a_consumer_builds_and_its_two_ways_to_filter_agree(self):
+    def test_a_consumer_builds_filters_in_two_ways_and_assembles(self):
         build = self.folder / "consumer"
         output(*self.configure, "-B", build)
         output(CMAKE, "--build", build)
@@ -53,18 +53,20 @@ class Package(unittest.TestCase):
                              r"0 entries differ\n", printed)
         self.assertTrue(found, printed)
         self.assertGreater(float(found[1]), 0)
+        self.assertEqual(output(build / "assemble_contacts"),
+                         "2 contacts in 2 colours, 17 blocks: translations cost nothing\n")
 
     def test_it_holds_every_header_of_the_kernels_and_nothing_that_a_consumer_does_not_need(self):
         headers = {f"include/definite/{path.relative_to(ROOT)}"
                    for path in (ROOT / "kernels").rglob("*.hpp")}
         files = {re.sub(r"Targets-\w+", "Targets-BUILD_TYPE", name) for name in self.files}
-        self.assertEqual(files, headers | {LIBRARY} | {PACKAGE + name for name in (
+        self.assertEqual(files, headers | LIBRARIES | {PACKAGE + name for name in (
             "FindOpenBLAS.cmake", "FindSLEEF.cmake", "definiteConfig.cmake", "definiteConfigVersion.cmake",
             "definiteTargets.cmake", "definiteTargets-BUILD_TYPE.cmake")})
 
     def test_no_file_mentions_the_sources_or_the_build(self):
         for name, path in self.files.items():
-            if name != LIBRARY:  # whose debugging information names its sources
+            if name not in LIBRARIES:  # whose debugging information names its sources
                 for place in (str(ROOT), BUILD):
                     self.assertNotIn(place, path.read_text(), name)
 
@@ -85,11 +87,12 @@ class Package(unittest.TestCase):
 
     def test_the_readme_quotes_the_consumer(self):
         section = (ROOT / "README.md").read_text().split("## Use a filter in your solver\n")[1]
-        lines = [line.strip() for line in (CONSUMER / "main.cpp").read_text().splitlines()]
-        quoted = section.split("```cpp\n")[1].split("```")[0].splitlines()
-        self.assertTrue(quoted)
-        for line in quoted:
-            self.assertIn(line.strip(), lines)
+        for block, name in ((1, "main.cpp"), (2, "assemble.cpp")):
+            lines = [line.strip() for line in (CONSUMER / name).read_text().splitlines()]
+            quoted = section.split("```cpp\n")[block].split("```")[0].splitlines()
+            self.assertTrue(quoted)
+            for line in quoted:
+                self.assertIn(line.strip(), lines)
 
 
 if __name__ == "__main__":

@@ -249,6 +249,20 @@ TYPED_TEST(SpectrumTest, SolvesRepeatedEigenvalues) {
   SolveAndExpectASpectrum<TypeParam>(Identity<T>(12));
 }
 
+TEST(EigenvaluesOf, AreThoseOfTheSpectrum) {
+  std::mt19937_64 random(5);
+  for (const int n : {1, 6, 9, 12}) {
+    Matrix<double> a = RandomSymmetric<double>(random, n);
+    for (int i = 0; i < 3; ++i, a = Outer(2.0, a * Matrix<double>(n, 1, 1))) {  // of rank one too
+      const Matrix<double> values = EigenvaluesOf(a);
+      EXPECT_LE(FrobeniusNorm(values - EigenSpectrum(a).values),
+                10 * n * kUnitRoundoff<double> * FrobeniusNorm(a));
+      EXPECT_TRUE(std::is_sorted(values.entries.begin(), values.entries.end()));
+    }
+  }
+  EXPECT_TRUE(std::isnan(EigenvaluesOf(Matrix<double>(3, 3, std::nan("")))[0]));
+}
+
 TYPED_TEST(SpectrumTest, SolvesGradedMatrices) {
   using T = typename TypeParam::Scalar;
   std::mt19937_64 random(4);

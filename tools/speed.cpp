@@ -19,7 +19,7 @@ struct Options {
   std::string distribution = "active", seed = "42";
   std::vector<std::string> rings = {"L1", "L2", "memory"};
   std::vector<std::string> threads = {"1", "2"};
-  std::string rounds = "15";
+  std::string rounds = "15", job = "1e7", elements = "1e5";
   std::optional<std::string> json;
 };
 
@@ -42,6 +42,8 @@ int RunSpeedCommand(const Options& options) {
     plan.threads.push_back(static_cast<int>(ParseCount("--threads", threads, 1, 1024)));
   }
   plan.rounds = static_cast<int>(ParseCount("--rounds", options.rounds, 1, 10000));
+  plan.configurations = static_cast<std::int64_t>(ParseCount("--job", options.job, 0, INT64_MAX));
+  plan.elements = static_cast<std::int64_t>(ParseCount("--elements", options.elements, 0, 1 << 28));
   std::erase_if(plan.rows, [&](const KernelRow* row) {
     return !plan.distribution->supports(row->energy->stencil);
   });
@@ -93,6 +95,16 @@ void AddSpeed(CLI::App& app, int& exit_code) {
   command
       ->add_option("--rounds", options->rounds, "Rounds, each in an order of its own (default: 15)")
       ->type_name("N");
+  command
+      ->add_option(
+          "--job", options->job,
+          "Also where the time goes when N configurations are drawn and filtered, for rows\n"
+          "with stages of their own (default: 1e7; 0: not)")
+      ->type_name("N");
+  command
+      ->add_option("--elements", options->elements,
+                   "Also N elements scatter-added to a block-sparse matrix (default: 1e5; 0: not)")
+      ->type_name("N");
   AddJsonOption(*command, options->json);
   command->footer(
       "The rows of an energy are timed in turn, in random order, on the same configurations. A\n"
@@ -103,7 +115,8 @@ void AddSpeed(CLI::App& app, int& exit_code) {
       "  definite speed --ring L1 --threads 1\n"
       "  definite speed --kernels '*/signed/quadratic/nearest/*' --kernels "
       "'*/quadratic/numeric/f64'\n"
-      "  definite speed --distribution paper --json speed.json");
+      "  definite speed --distribution paper --json speed.json\n"
+      "  definite speed --kernels 'collision/edge_edge/*/quadratic/analytic/f64x8*' --ring L1");
   command->callback([options, &exit_code] { exit_code = RunSpeedCommand(*options); });
 }
 

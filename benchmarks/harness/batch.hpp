@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "benchmarks/harness/sampling/distribution.hpp"
+#include "kernels/core/aligned_doubles.hpp"
 #include "kernels/kernel.hpp"
 
 namespace definite {
@@ -17,20 +18,6 @@ inline constexpr int kTile = 8;  // configurations in the widest tile; batches a
 constexpr std::int64_t WholeTiles(std::int64_t count) {
   return (count + kTile - 1) / kTile * kTile;
 }
-
-// Doubles that start at a cache line, as lanes like them.
-class AlignedDoubles {
- public:
-  void Resize(std::size_t count) { lines_.resize((count + 7) / 8); }
-  double* Data() { return lines_.empty() ? nullptr : lines_.front().numbers; }
-  const double* Data() const { return lines_.empty() ? nullptr : lines_.front().numbers; }
-
- private:
-  struct alignas(64) CacheLine {
-    double numbers[8];
-  };
-  std::vector<CacheLine> lines_;
-};
 
 // `size` configurations of an energy, each number twice: in scalar tiles, and in tiles of eight.
 class Batch {

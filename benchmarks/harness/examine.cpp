@@ -67,6 +67,13 @@ double Excess(double change, double least_change) {
   return change == 0 && least_change == 0 ? 1 : change / least_change;
 }
 
+const KernelRow* NearestOf(const EnergyRow& energy, std::span<const KernelRow* const> rows) {
+  const bool judged =
+      std::ranges::any_of(rows, [](const KernelRow* row) { return row->filter == "nearest"; });
+  const KernelRow* const fast = judged ? nullptr : FindKernel(energy.name + "/nearest/f64x8");
+  return fast ? fast : FindKernel(energy.name + "/numeric/f64");
+}
+
 // How many eigenvalues of a are clearly positive.
 long PositiveCount(Packed a) {
   const double threshold = kRatioBound * PackedRows(a) * kUnit * FrobeniusNorm(a);
@@ -113,12 +120,12 @@ Examiner::Examiner(const EnergyRow& energy, std::span<const KernelRow* const> ro
     : energy_(&energy),
       rows_(rows.begin(), rows.end()),
       exact_(FindKernel(energy.name + "/none/f64")),
-      nearest_(FindKernel(energy.name + "/numeric/f64")),
+      nearest_(NearestOf(energy, rows)),
       reference_(reference::FindEnergy<double>(energy.name)),
       quad_reference_(reference::FindEnergy<Quad>(energy.name)),
       figures_(rows.size()) {
   if (!exact_ || !nearest_) {
-    throw std::runtime_error(energy.name + " lacks the row none/f64 or numeric/f64");
+    throw std::runtime_error(energy.name + " lacks the row none/f64 or one of the nearest matrix");
   }
   if (!reference_ || !quad_reference_) {
     throw std::runtime_error(energy.name + " has no definition in reference/energies");
@@ -151,6 +158,25 @@ void Examiner::Examine(const double* x, const double* p, Depth depth) {
 
 void Examiner::Examine(const double* x, const double* p, Packed h, Packed nearest,
                        std::span<const Packed> outputs, Depth depth) {
+  const auto measure = [&](Packed f) {
+    return Measures{FrobeniusNorm(f), FrobeniusDistance(f, nearest), FrobeniusDistance(f, h),
+                    IsPsd(f)};
+  };
+  std::vector<RowOutput> measured;
+  for (std::size_t r = 0; r < outputs.size(); ++r) {
+    std::size_t twin = 0;
+    while (twin < r &&
+           (rows_[twin]->filter != rows_[r]->filter ||
+            std::memcmp(outputs[twin].data(), outputs[r].data(), outputs[r].size_bytes()) != 0)) {
+      ++twin;
+    }
+    measured.push_back({outputs[r], measure(outputs[r]), twin});
+  }
+  Examine(x, p, {h, nearest, measure(h), FrobeniusNorm(nearest)}, measured, depth);
+}
+
+void Examiner::Examine(const double* x, const double* p, const ExactOutput& exact,
+                       std::span<const RowOutput> outputs, Depth depth) {
   double classification[3];
   energy_->classify(x, p, classification, 1);
   configuration_ = {};
@@ -163,78 +189,62 @@ void Examiner::Examine(const double* x, const double* p, Packed h, Packed neares
   }
   if (!configuration_.active) return;
 
-  configuration_.indefinite = !IsPsd(h);
+  configuration_.indefinite = !exact.of_h.psd;
   configuration_.conditioning = reference_->conditioning(x, p);
-  const Exact exact = {h, nearest, FrobeniusNorm(h), FrobeniusNorm(nearest),
-                       FrobeniusDistance(nearest, h)};
   Definitions definitions(*reference_, *quad_reference_, x, p);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     // Lanes give the same bits as the scalar row before them, as a rule: no need to look twice.
-    const std::size_t twin = TwinOf(r, outputs);
-    if (twin < r) {
-      figures_[r] = figures_[twin];
-    } else {
+    if (outputs[r].twin < r) {
+      figures_[r] = figures_[outputs[r].twin];
+    } else if (outputs[r].asked) {
       ExamineRow(r, x, p, exact, outputs[r], depth, definitions);
     }
   }
   if (depth.truth) ExamineEnergy(x, p, definitions);
 }
 
-std::size_t Examiner::TwinOf(std::size_t r, std::span<const Packed> outputs) const {
-  std::size_t twin = 0;
-  while (twin < r &&
-         (rows_[twin]->filter != rows_[r]->filter ||
-          std::memcmp(outputs[twin].data(), outputs[r].data(), outputs[r].size_bytes()) != 0)) {
-    ++twin;
-  }
-  return twin;
-}
-
-void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const Exact& exact,
-                          Packed f, Depth depth, Definitions& definitions) {
+void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const ExactOutput& exact,
+                          const RowOutput& output, Depth depth, Definitions& definitions) {
   const KernelRow& row = *rows_[r];
   RowFigures& figures = figures_[r];
   const auto breaks = [&](Property property) {
     if (row.Promises(property)) figures.broken.push_back(property);
   };
-  if (!AllFinite(f)) {
+  const auto [norm, to_nearest, to_exact, psd] = output.measures;
+  // The norm of finite entries may overflow.
+  if (!std::isfinite(norm) && !AllFinite(output.f)) {
     figures.verdict = Verdict::kNonFinite;
     breaks(Property::kFinite);
     return;
   }
-  const double norm = FrobeniusNorm(f);
-  const double distance = FrobeniusDistance(f, exact.nearest);
-  figures.distance = distance == 0 ? 0 : distance / exact.nearest_norm;
-  figures.excess = Excess(FrobeniusDistance(f, exact.h), exact.least_change);
+  const double h_norm = exact.of_h.norm;
+  figures.distance = to_nearest == 0 ? 0 : to_nearest / exact.nearest_norm;
+  figures.excess = Excess(to_exact, exact.of_h.to_nearest);
 
-  if (norm > kGrowth * exact.h_norm) figures.verdict = Verdict::kDegraded;
+  if (norm > kGrowth * h_norm) figures.verdict = Verdict::kDegraded;
   if (depth.definition) {
     figures.defined = true;
     const double bound = kDegraded / configuration_.conditioning;
-    double error = RelativeError(f, definitions.Of(*filters_[r]));
+    double error = RelativeError(output.f, definitions.Of(*filters_[r]));
     // Written so that a NaN is doubted too.
-    const bool ill_conditioned = !(kUnit * exact.h_norm <= kIllConditioned * exact.nearest_norm);
+    const bool ill_conditioned = !(kUnit * h_norm <= kIllConditioned * exact.nearest_norm);
     if (depth.truth || ill_conditioned || !(error <= kDoubt * bound)) {
-      ExamineTruth(r, f, definitions);
+      ExamineTruth(r, output.f, definitions);
       error = *figures.rounding * energy_->dofs * kUnit;
       if (!(*figures.conditioned_rounding <= kRatioBound)) breaks(Property::kAccurate);
     }
     if (!(error <= bound)) figures.verdict = Verdict::kDegraded;
   }
-  if (!IsPsd(f)) {
+  if (!psd) {
     figures.verdict = Verdict::kNonPsd;
     breaks(Property::kPsd);
   }
-  if (norm == 0 && exact.h_norm != 0) figures.verdict = Verdict::kSilentZero;
+  if (norm == 0 && h_norm != 0) figures.verdict = Verdict::kSilentZero;
   if (depth.spectrum) {
-    ExamineSpectrum(r, x, p, exact, f);
+    ExamineSpectrum(r, x, p, exact, output);
     const double bound = Bound();
-    if (*figures.majorises * exact.h_norm > bound * (exact.h_norm + norm)) {
-      breaks(Property::kMajorises);
-    }
-    if (*figures.relabelling * norm > 2 * bound * (exact.h_norm + norm)) {
-      breaks(Property::kRelabelling);
-    }
+    if (*figures.majorises * h_norm > bound * (h_norm + norm)) breaks(Property::kMajorises);
+    if (*figures.relabelling * norm > 2 * bound * (h_norm + norm)) breaks(Property::kRelabelling);
   }
 }
 
@@ -251,10 +261,11 @@ void Examiner::ExamineTruth(std::size_t r, Packed f, Definitions& definitions) {
   figures.excess = Excess(DistanceTo(f, exact), NormOf(exact - nearest));
 }
 
-void Examiner::ExamineSpectrum(std::size_t r, const double* x, const double* p, const Exact& exact,
-                               Packed f) {
+void Examiner::ExamineSpectrum(std::size_t r, const double* x, const double* p,
+                               const ExactOutput& exact, const RowOutput& output) {
   RowFigures& figures = figures_[r];
-  const double norm = FrobeniusNorm(f), h_norm = exact.h_norm;
+  const Packed f = output.f;
+  const double norm = output.measures.norm, h_norm = exact.of_h.norm;
   const auto below_zero = [](Packed a) { return std::max(0.0, -Eigenvalues(a).front()); };
   figures.psd_defect = norm == 0 ? 0 : below_zero(f) / (energy_->dofs * kUnit * norm);
   figures.majorises = h_norm == 0 ? 0 : below_zero(Difference(f, exact.h)) / h_norm;

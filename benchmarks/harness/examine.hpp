@@ -63,22 +63,45 @@ struct ConfigurationFigures {
   std::optional<double> value_rounding, gradient_rounding;  // conditioned, in units of n u
 };
 
+// H and P in double, and what every row asks of them.
+struct ExactOutput {
+  Packed h, nearest;
+  Measures of_h;
+  double nearest_norm;
+};
+
+// What a row made of a configuration.
+struct RowOutput {
+  Packed f;
+  Measures measures;
+  // The first row of the same filter that made the same bits; the row itself if there is none.
+  std::size_t twin;
+  bool asked = true;  // or not looked at, at this configuration
+};
+
 // Judges rows of one energy. Not thread safe; one for each thread.
 class Examiner {
  public:
-  // The energy must have a reference and the rows none/f64 and numeric/f64, which give H and P in
-  // double; throws std::runtime_error otherwise. Rows may be any of the energy's, in any order.
+  // The energy must have a reference, and rows that give H and P in double; throws
+  // std::runtime_error otherwise. Rows may be any of the energy's, in any order.
   Examiner(const EnergyRow& energy, std::span<const KernelRow* const> rows);
 
-  // Judges configuration (x, p). outputs[r] is what row r made of it, outputs `h` and `nearest`
-  // what none/f64 and numeric/f64 did.
+  // Judges configuration (x, p) by what rows made of it: outputs[r] row r, `exact` ExactRow and
+  // NearestRow.
+  void Examine(const double* x, const double* p, const ExactOutput& exact,
+               std::span<const RowOutput> outputs, Depth depth);
+
+  // The same, by matrices.
   void Examine(const double* x, const double* p, Packed h, Packed nearest,
                std::span<const Packed> outputs, Depth depth);
 
   // The same, running the rows first.
   void Examine(const double* x, const double* p, Depth depth);
 
+  // none/f64.
   const KernelRow& ExactRow() const { return *exact_; }
+  // nearest/f64x8, which takes a hundredth of the time; or numeric/f64 where there is none, or
+  // where it is to be judged itself.
   const KernelRow& NearestRow() const { return *nearest_; }
   const ConfigurationFigures& Configuration() const { return configuration_; }
   const RowFigures& Row(std::size_t r) const { return figures_[r]; }
@@ -86,18 +109,10 @@ class Examiner {
  private:
   struct Definitions;
 
-  // H and P in double, and what every row asks of them.
-  struct Exact {
-    Packed h, nearest;
-    double h_norm, nearest_norm, least_change;  // |H|, |P|, |P - H|
-  };
-
-  // The first row of the same filter with the same bits, r itself if there is none before it.
-  std::size_t TwinOf(std::size_t r, std::span<const Packed> outputs) const;
-  void ExamineRow(std::size_t r, const double* x, const double* p, const Exact& exact, Packed f,
-                  Depth depth, Definitions& definitions);
-  void ExamineSpectrum(std::size_t r, const double* x, const double* p, const Exact& exact,
-                       Packed f);
+  void ExamineRow(std::size_t r, const double* x, const double* p, const ExactOutput& exact,
+                  const RowOutput& output, Depth depth, Definitions& definitions);
+  void ExamineSpectrum(std::size_t r, const double* x, const double* p, const ExactOutput& exact,
+                       const RowOutput& output);
   void ExamineTruth(std::size_t r, Packed f, Definitions& definitions);
   void ExamineEnergy(const double* x, const double* p, Definitions& definitions);
   double Bound() const;  // of an error relative to |F|, by the conditioning

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "benchmarks/harness/batch.hpp"
+
 namespace definite {
 
 // Test ratios are relative to n u |F|; above this bound a matrix is not PSD, or not accurate.
@@ -24,6 +26,16 @@ double RelativeDistance(Packed a, Packed b);
 
 // Whether lambda_min(a) >= -kRatioBound n u |a|, by the pivots of the shifted matrix.
 bool IsPsd(Packed a);
+
+// What is asked of every matrix F, beside P and H.
+struct Measures {
+  double norm, to_nearest, to_exact;  // |F|, |F - P|, |F - H|
+  bool psd;                           // IsPsd(F)
+};
+
+// Of a tile of each; the same bits as one by one.
+void MeasureTile(int n, const double* f, const double* nearest, const double* exact,
+                 std::span<Measures, kTile> measures);
 
 // All eigenvalues, ascending; NaN if an entry is not finite.
 std::vector<double> Eigenvalues(Packed a);

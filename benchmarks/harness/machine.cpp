@@ -45,8 +45,8 @@ nlohmann::ordered_json DescribeBuild() {
   build["flags"] = build_info::kFlags;
   build["type"] = build_info::kType;
   build["isa"] = kInstructionSet;
-  build["eigen"] = std::to_string(EIGEN_WORLD_VERSION) + "." +
-                   std::to_string(EIGEN_MAJOR_VERSION) + "." + std::to_string(EIGEN_MINOR_VERSION);
+  build["eigen"] = std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
+                   "." + std::to_string(EIGEN_MINOR_VERSION);
   build["libm"] = std::string("glibc ") + gnu_get_libc_version();
   build["commit"] = build_info::kCommit;
   return build;

@@ -11,9 +11,9 @@
 namespace definite {
 
 inline constexpr std::array<Property, 10> kProperties = {
-    Property::kFinite,      Property::kPsd,        Property::kAccurate, Property::kLanesEqualScalar,
-    Property::kKeepsPsd,    Property::kMajorises,  Property::kRigidMotion,
-    Property::kTranslation, Property::kScale,      Property::kRelabelling};
+    Property::kFinite,   Property::kPsd,        Property::kAccurate,    Property::kLanesEqualScalar,
+    Property::kKeepsPsd, Property::kMajorises,  Property::kRigidMotion, Property::kTranslation,
+    Property::kScale,    Property::kRelabelling};
 
 // "finite", "psd", ...: as JSON and tables have it.
 std::string_view PropertyName(Property property);

@@ -103,6 +103,7 @@ Json TimingToJson(const SweepPlan& plan, const EnergyResult& energy, const RowRe
   timing["threads"] = plan.threads;
   timing["clock"] = plan.threads == 1 ? "thread_cpu" : "wall";
   timing["rounds"] = (r.timing.*rounds).size();
+  timing["share"] = TimedShare(*r.row);
   timing["output"] = r.row->output;
   timing["ring"] = "L1";
   timing["ring_configurations"] = kRing;

@@ -91,6 +91,10 @@ Depth DepthOf(std::uint64_t index, std::uint64_t count, const Samples& samples) 
   return depth;
 }
 
+bool IsSampled(const KernelRow& row) {
+  return row.filter.starts_with("numeric") || row.filter == "absolute_numeric";
+}
+
 std::vector<SweepResult> RunSweeps(std::span<const SweepPlan> plans, Progress& progress) {
   std::vector<SweepResult> results;
   std::uint64_t timed = 0, checked = 0;

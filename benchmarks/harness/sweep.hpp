@@ -97,6 +97,10 @@ SweepResult RunSweep(const SweepPlan& plan, Progress& progress);
 // Runs the timed passes of all plans, then the checked ones; the progress is that of all.
 std::vector<SweepResult> RunSweeps(std::span<const SweepPlan> plans, Progress& progress);
 
+// Whether a row is looked at only where definitions are (Samples): an eigendecomposition of each
+// matrix by itself takes microseconds, and is what the others are compared with.
+bool IsSampled(const KernelRow& row);
+
 // How closely configuration `index` of `count` is looked at.
 Depth DepthOf(std::uint64_t index, std::uint64_t count, const Samples& samples = {});
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "benchmarks/harness/batch.hpp"
@@ -18,12 +19,13 @@ constexpr int kMaxRounds = 15;
 
 constexpr std::int64_t CeilDivide(std::int64_t a, std::int64_t b) { return (a + b - 1) / b; }
 
-// Seconds that a row takes over the batch, its outputs going round in the ring.
-double TimeOf(const KernelRow& row, const Batch& batch, double* ring, double (*clock)()) {
+// Seconds that a row takes over the first `size` of the batch, its outputs going round in the ring.
+double TimeOf(const KernelRow& row, const Batch& batch, std::int64_t size, double* ring,
+              double (*clock)()) {
   const double start = clock();
-  for (std::int64_t i = 0; i < batch.Size(); i += kRing) {
-    const std::int64_t size = std::min<std::int64_t>(kRing, batch.Size() - i);
-    row.run(batch.TilesX(row.lanes, i), batch.TilesP(row.lanes, i), ring, size / row.lanes);
+  for (std::int64_t i = 0; i < size; i += kRing) {
+    const std::int64_t chunk = std::min<std::int64_t>(kRing, size - i);
+    row.run(batch.TilesX(row.lanes, i), batch.TilesP(row.lanes, i), ring, chunk / row.lanes);
     asm volatile("" : : "r"(ring) : "memory");  // the outputs count as used
   }
   return clock() - start;
@@ -50,11 +52,14 @@ class Parts {
   static constexpr std::size_t kActive = 0, kIdle = 1;
   std::int64_t Count(std::size_t part) const { return std::ssize(indices_[part]); }
 
-  // Seconds for the configurations of one part; what fills up its last tile is taken off.
+  // Seconds for the configurations of one part, from those that the row is timed on; what fills up
+  // its last tile is taken off.
   double TimeOf(std::size_t part, const KernelRow& row, double* ring, double (*clock)()) const {
     if (!Count(part)) return 0;
-    return definite::TimeOf(row, batch_[part], ring, clock) * static_cast<double>(Count(part)) /
-           static_cast<double>(batch_[part].Size());
+    const std::int64_t size =
+        WholeTiles(std::llround(std::ceil(TimedShare(row) * static_cast<double>(Count(part)))));
+    return definite::TimeOf(row, batch_[part], size, ring, clock) *
+           static_cast<double>(Count(part)) / static_cast<double>(size);
   }
 
  private:
@@ -75,6 +80,8 @@ std::vector<std::size_t> ShuffledOrder(std::size_t count, std::uint64_t seed, st
   }
   return order;
 }
+
+double TimedShare(const KernelRow& row) { return IsSampled(row) ? 0.125 : 1; }
 
 int TimedRounds(std::uint64_t count) {
   return static_cast<int>(std::clamp<std::uint64_t>(count / 512, 1, kMaxRounds));

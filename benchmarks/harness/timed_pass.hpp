@@ -8,6 +8,10 @@ namespace definite {
 
 inline constexpr int kRing = 16;  // configurations in the output ring, which stays in L1
 
+// Of each block of configurations, the part that a row is timed on: an eigendecomposition takes so
+// long that an eighth gives its time as well.
+double TimedShare(const KernelRow& row);
+
 int TimedRounds(std::uint64_t count);
 
 // 0 to count - 1 in a random order that depends on seed and round alone: who is timed when.

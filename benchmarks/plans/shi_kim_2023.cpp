@@ -370,7 +370,7 @@ Plan ShiKim2023() {
           true,
           false,
           Detail::kSummaries,
-          {},
+          {.definition = 200'000},  // a double definition takes 60 us
           Sweeps,
           AllClaims,
           Markdown};

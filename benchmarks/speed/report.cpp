@@ -46,6 +46,65 @@ std::string Number(const std::optional<MedianEstimate>& e) {
   return fmt::format("{:.{}f}", e->median, e->median < 10 ? 2 : e->median < 100 ? 1 : 0);
 }
 
+std::string_view WithoutScalar(const KernelRow& row) {
+  return std::string_view(row.name).substr(0, row.name.rfind('/'));
+}
+
+// The same job on the first number of threads over this one.
+template <class Time, class Seconds>
+std::string SpeedUp(const std::vector<Time>& all, const Time& one, Seconds seconds) {
+  for (const Time& first : all) {
+    if (first.row != one.row) continue;
+    return first.threads == one.threads ? "1"
+                                        : fmt::format("{:.2f}", seconds(first) / seconds(one));
+  }
+  return "";
+}
+
+std::string JobTable(const SpeedResult& result) {
+  if (result.jobs.empty()) return "";
+  const JobTime& any = result.jobs.front();
+  std::string table = fmt::format(
+      "\nThe whole job: {:.3g} configurations of {}, drawn and filtered over lanes, outputs in "
+      "L1;\n"
+      "wall time, ns each. Hessian: filtered, less the frame; write: packed, less both.\n",
+      static_cast<double>(any.count), result.plan.distribution->name);
+  table += fmt::format("{:<56}{:>2}{:>6}{:>6}{:>8}{:>6}{:>7}{:>6}\n", "", "T", "draw", "frame",
+                       "Hessian", "write", "s", "x");
+  for (const JobTime& job : result.jobs) {
+    const auto ns = [&job](double seconds) {
+      return seconds * 1e9 / static_cast<double>(job.count);
+    };
+    table += fmt::format("{:<56}{:>2}{:>6.1f}{:>6.1f}{:>8.1f}{:>6.1f}{:>7.2f}{:>6}\n",
+                         WithoutScalar(*job.row), job.threads, ns(job.draw), ns(job.frame),
+                         ns(job.hessian - job.frame), ns(job.packed - job.hessian), job.Total(),
+                         SpeedUp(result.jobs, job, [](const JobTime& t) { return t.Total(); }));
+  }
+  return table;
+}
+
+std::string AssemblyTable(const SpeedResult& result) {
+  if (result.assemblies.empty()) return "";
+  const AssemblyTime& any = result.assemblies.front();
+  std::string table = fmt::format(
+      "\nScatter-add: {:.3g} elements gathered, filtered and added to {:.3g} 3x3 blocks, colour "
+      "by\n"
+      "colour ({} of them); wall time, ns each, beside the row alone on one thread\n",
+      static_cast<double>(any.elements), static_cast<double>(any.blocks), any.colours);
+  table += fmt::format("{:<56}{:>2}{:>8}{:>11}{:>6}\n", "", "T", "row", "scattered", "x");
+  const auto median = [](const std::vector<double>& seconds) {
+    const auto e = EstimateMedian(seconds);
+    return e ? e->median : 0;
+  };
+  for (const AssemblyTime& time : result.assemblies) {
+    table += fmt::format("{:<56}{:>2}{:>8.1f}{:>11.1f}{:>6}\n", WithoutScalar(*time.row),
+                         time.threads, median(time.kernel) * 1e9, median(time.assembled) * 1e9,
+                         SpeedUp(result.assemblies, time,
+                                 [&](const AssemblyTime& t) { return median(t.assembled); }));
+  }
+  return table;
+}
+
 }  // namespace
 
 Json ToJson(const SpeedResult& result, const std::vector<std::string>& command) {
@@ -84,6 +143,29 @@ Json ToJson(const SpeedResult& result, const std::vector<std::string>& command) 
                                {"gauss_newton", ToJson(row.to_gauss_newton, 1)}}},
                              {"floor", ToJson(row.floor)}});
   }
+  speed["jobs"] = Json::array();
+  for (const JobTime& job : result.jobs) {
+    speed["jobs"].push_back({{"kernel", job.row->name},
+                             {"threads", job.threads},
+                             {"count", job.count},
+                             {"seconds",
+                              {{"draw", job.draw},
+                               {"frame", job.frame},
+                               {"hessian", job.hessian},
+                               {"packed", job.packed},
+                               {"total", job.Total()}}}});
+  }
+  speed["assemblies"] = Json::array();
+  for (const AssemblyTime& time : result.assemblies) {
+    speed["assemblies"].push_back({{"kernel", time.row->name},
+                                   {"threads", time.threads},
+                                   {"elements", time.elements},
+                                   {"blocks", time.blocks},
+                                   {"colours", time.colours},
+                                   {"rounds", time.assembled.size()},
+                                   {"kernel_ns", ToJson(EstimateMedian(time.kernel), 1e9)},
+                                   {"assembled_ns", ToJson(EstimateMedian(time.assembled), 1e9)}});
+  }
   return json;
 }
 
@@ -118,7 +200,7 @@ std::string ToTable(const SpeedResult& result) {
         row.floor && time ? fmt::format("{:.1f}", time->median / row.floor->Seconds()) : "-",
         row.floor ? fmt::format("  {}", row.floor->Binds()) : "");
   }
-  return table;
+  return table + JobTable(result) + AssemblyTable(result);
 }
 
 }  // namespace definite

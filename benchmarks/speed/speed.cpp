@@ -213,6 +213,14 @@ SpeedResult RunSpeed(const SpeedPlan& plan, Progress& progress) {
       }
     }
   }
+  if (plan.configurations > 0) {
+    result.jobs = TimeJobs(RowsWithStages(plan.rows), *plan.distribution, plan.seed,
+                           plan.configurations, plan.threads, progress);
+  }
+  if (plan.elements > 0) {
+    result.assemblies = TimeAssemblies(RowsToAssemble(plan.rows), plan.seed, plan.elements,
+                                       plan.threads, plan.rounds, progress);
+  }
   progress.Finish();
   result.partial = Interrupted();
   return result;

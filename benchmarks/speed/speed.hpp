@@ -13,6 +13,7 @@
 #include "benchmarks/harness/progress.hpp"
 #include "benchmarks/harness/sampling/distribution.hpp"
 #include "benchmarks/speed/roofline.hpp"
+#include "benchmarks/speed/stages.hpp"
 #include "kernels/kernel.hpp"
 
 namespace definite {
@@ -24,6 +25,8 @@ struct SpeedPlan {
   std::vector<Level> levels = {Level::kL1, Level::kL2, Level::kMemory};
   std::vector<int> threads = {1, 2};
   int rounds = 15;
+  // Of the jobs and the assemblies of stages.hpp; none if 0.
+  std::int64_t configurations = 0, elements = 0;
 };
 
 // The least time that a configuration can take on one core.
@@ -52,6 +55,8 @@ struct SpeedResult {
   std::optional<double> load_before;
   bool noisy = false;  // other work had its share of the machine
   std::vector<SpeedRow> rows;
+  std::vector<JobTime> jobs;
+  std::vector<AssemblyTime> assemblies;
   bool partial = false;
 };
 
