@@ -1,4 +1,5 @@
-// The rows for users of Google Benchmark and its compare.py, and a hand-written loop beside them.
+// The rows, whatever their output, for users of Google Benchmark and its compare.py, and a
+// loop written by hand beside them.
 //
 //   kernels_benchmark --benchmark_filter='analytic/f64x8' --benchmark_repetitions=9
 
@@ -23,7 +24,7 @@ struct Buffers {
 
   explicit Buffers(const EnergyRow& energy) : batch(energy) {
     batch.Draw(*FindDistribution("active"), 42, 0, kCount);
-    ring.Resize(static_cast<std::size_t>(energy.dofs * (energy.dofs + 1) / 2 * kRing));
+    ring.Resize(static_cast<std::size_t>(energy.dofs * energy.dofs * kRing));  // the dense output's
   }
 
   static Buffers& Of(const EnergyRow& energy) {
@@ -49,11 +50,13 @@ void RunTiles(benchmark::State& state, const EnergyRow& energy, TileFunction run
 
 int main(int argc, char** argv) {
   using namespace definite;
-  for (const KernelRow& row : AllKernels()) {
-    if (!FindDistribution("active")->supports(row.energy->stencil)) continue;
-    benchmark::RegisterBenchmark(row.name.c_str(), [&row](benchmark::State& state) {
-      RunTiles(state, *row.energy, row.run, row.lanes);
-    });
+  for (const std::span<const KernelRow> rows : {AllKernels(), AllOutputs()}) {
+    for (const KernelRow& row : rows) {
+      if (!FindDistribution("active")->supports(row.energy->stencil)) continue;
+      benchmark::RegisterBenchmark(row.name.c_str(), [&row](benchmark::State& state) {
+        RunTiles(state, *row.energy, row.run, row.lanes);
+      });
+    }
   }
   const KernelRow* row = FindKernel("collision/vertex_face/signed/quadratic/analytic/f64x8");
   benchmark::RegisterBenchmark("hand_fused/analytic/f64x8", [row](benchmark::State& state) {

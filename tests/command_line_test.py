@@ -637,6 +637,45 @@ class Speed(unittest.TestCase):
         # Each of the 1500 vertices has a block, and each element at most six others.
         self.assertTrue(1500 < assemblies[0]["blocks"] <= 1500 + 6 * 3000)
 
+    def test_the_tables_of_a_file_need_its_rows(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file, page = pathlib.Path(folder) / "speed.json", pathlib.Path(folder) / "speed.md"
+            done = run(*self.WORDS, "--threads", "1", "--json", file)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            done = run("speed", "--from", file, "--markdown", page)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"--from '{file}': the result lacks {ENERGY}/analytic_frame/f64", done.stderr)
+            self.assertFalse(page.exists())
+
+            # As if all rows were there.
+            result = json.loads(file.read_text())
+            row = result["speed"]["rows"][0]
+            for energy in (ENERGY, "collision/edge_edge/signed/quadratic"):
+                for name in ("analytic_frame/f64", "gauss_newton_frame/f64", "gauss_newton/f64",
+                             "analytic/f64", "analytic/f64x8", "gauss_newton/f64x8"):
+                    for ring in ("L1", "L2", "memory"):
+                        for threads in (1, 2):
+                            ns = dict.fromkeys(("median", "minimum", "low", "high"), len(name))
+                            result["speed"]["rows"].insert(0, {
+                                **row, "kernel": f"{energy}/{name}", "ring": ring,
+                                "threads": threads, "ns_per_hessian": ns})
+            file.write_text(json.dumps(result))
+            VALIDATOR.validate(result)
+            done = run("speed", "--from", file)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual([line for line in done.stdout.splitlines() if len(line) > 98], [])
+            # 18 and 22 letters.
+            self.assertRegex(done.stdout, r"\| both through the frame +\| vertex-face +\| +18\.0 \| "
+                                          r"+22\.0 \|  0\.82 \|")
+            self.assertRegex(done.stdout, r"\| the same, 2 threads +\| +edge-edge \| +28\.0 \|")
+            self.assertEqual(run("speed", "--from", file, "--markdown", page).stdout, "")
+            self.assertEqual(page.read_text(), done.stdout)
+
+            (pathlib.Path(folder) / "other.json").write_text('{"schema": 5}')
+            done = run("speed", "--from", pathlib.Path(folder) / "other.json")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("expected a result of definite, schema definite/1", done.stderr)
+
     def test_jobs_and_assemblies_can_be_left_out(self):
         done = run("speed", "--kernels", ENERGY + "/analytic/f64x8*", "--ring", "L1", "--threads", "1",
                    "--rounds", "1", "--job", "0", "--elements", "0", "--json", "-")

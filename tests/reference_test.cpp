@@ -186,6 +186,10 @@ struct JacobiDouble {
   using Scalar = double;
   static Spectrum<double> Solve(const Matrix<double>& a) { return JacobiSpectrum(a); }
 };
+struct EigenQuad {
+  using Scalar = Quad;
+  static Spectrum<Quad> Solve(const Matrix<Quad>& a) { return EigenSpectrum(a); }
+};
 struct EigenDouble {
   using Scalar = double;
   static Spectrum<double> Solve(const Matrix<double>& a) { return EigenSpectrum(a); }
@@ -212,7 +216,7 @@ Spectrum<T> SolveAndExpectASpectrum(const Matrix<T>& a) {
 
 template <class Solver>
 class SpectrumTest : public testing::Test {};
-using Solvers = testing::Types<JacobiQuad, JacobiDouble, EigenDouble>;
+using Solvers = testing::Types<JacobiQuad, JacobiDouble, EigenDouble, EigenQuad>;
 TYPED_TEST_SUITE(SpectrumTest, Solvers);
 
 TYPED_TEST(SpectrumTest, SolvesRandomMatrices) {

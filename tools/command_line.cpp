@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <numeric>
 #include <thread>
 
@@ -180,6 +181,18 @@ void AddSetOption(CLI::App& command, std::vector<std::string>& overrides) {
 void AddSeedOption(CLI::App& command, std::string& seed) {
   command.add_option("--seed", seed, fmt::format("Seed of the configurations (default: {})", seed))
       ->type_name("N");
+}
+
+nlohmann::ordered_json ReadResult(const std::string& option, const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw UsageError(fmt::format("{} '{}': cannot read it", option, path));
+  auto json = nlohmann::ordered_json::parse(file, nullptr, false);
+  if (json.is_discarded() || !json.is_object() ||
+      json.value("schema", nlohmann::ordered_json()) != "definite/1") {
+    throw UsageError(
+        fmt::format("{} '{}': expected a result of definite, schema definite/1", option, path));
+  }
+  return json;
 }
 
 std::uint64_t RunOptions::Count() const {

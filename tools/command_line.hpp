@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -40,6 +41,9 @@ const Distribution& DistributionNamed(const std::string& name);
 // what none of the rows' energies has.
 std::vector<ParameterValue> ParseOverrides(const std::vector<std::string>& words,
                                            const std::vector<const KernelRow*>& rows);
+
+// A result that definite wrote. Throws UsageError, naming the option, if the file is not one.
+nlohmann::ordered_json ReadResult(const std::string& option, const std::string& path);
 
 // What a run over many configurations is told.
 struct RunOptions {

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 
 #include "benchmarks/harness/report.hpp"
@@ -24,11 +23,8 @@ struct Options {
 };
 
 nlohmann::ordered_json Read(const Plan& plan, const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw UsageError(fmt::format("--from '{}': cannot read it", path));
-  const auto json = nlohmann::ordered_json::parse(file, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || json.value("schema", "") != "definite/1" ||
-      json.value("paper", "") != plan.name) {
+  nlohmann::ordered_json json = ReadResult("--from", path);
+  if (json.value("paper", nlohmann::ordered_json()) != plan.name) {
     throw UsageError(
         fmt::format("--from '{}': expected a result of 'definite reproduce {}'", path, plan.name));
   }

@@ -20,8 +20,25 @@ struct Options {
   std::vector<std::string> rings = {"L1", "L2", "memory"};
   std::vector<std::string> threads = {"1", "2"};
   std::string rounds = "15", job = "1e7", elements = "1e5";
-  std::optional<std::string> json;
+  std::optional<std::string> json, markdown, from;
 };
+
+nlohmann::ordered_json ReadSpeed(const std::string& path) {
+  const nlohmann::ordered_json json = ReadResult("--from", path);
+  if (!json.contains("speed")) {
+    throw UsageError(fmt::format("--from '{}': expected a result of 'definite speed'", path));
+  }
+  return json;
+}
+
+std::string MarkdownOf(const nlohmann::ordered_json& json, const Options& options) {
+  try {
+    return ToMarkdown(json);
+  } catch (const std::exception& error) {
+    throw UsageError(options.from ? fmt::format("--from '{}': {}", *options.from, error.what())
+                                  : fmt::format("--markdown: {}", error.what()));
+  }
+}
 
 Level LevelNamed(const std::string& name) {
   for (Level level : {Level::kL1, Level::kL2, Level::kMemory}) {
@@ -30,7 +47,17 @@ Level LevelNamed(const std::string& name) {
   throw UsageError(fmt::format("--ring '{}': expected L1, L2 or memory", name));
 }
 
+// Measures nothing.
+int ShowEarlier(const Options& options) {
+  std::optional<OutputFile> file;
+  if (options.markdown) file.emplace("--markdown", *options.markdown);
+  const std::string markdown = MarkdownOf(ReadSpeed(*options.from), options);
+  file ? file->Commit(markdown) : fmt::print("{}", markdown);
+  return kOk;
+}
+
 int RunSpeedCommand(const Options& options) {
+  if (options.from) return ShowEarlier(options);
   SpeedPlan plan;
   plan.rows = RowsMatching(options.kernels, Outputs::kAll);
   plan.distribution = &DistributionNamed(options.distribution);
@@ -51,17 +78,18 @@ int RunSpeedCommand(const Options& options) {
     throw UsageError(fmt::format("--distribution '{}': it cannot draw any of the rows asked for",
                                  options.distribution));
   }
-  std::optional<OutputFile> json;
+  std::optional<OutputFile> json, markdown;
   if (options.json) json.emplace("--json", *options.json);
+  if (options.markdown) markdown.emplace("--markdown", *options.markdown);
 
   Progress progress(isatty(STDERR_FILENO) != 0);
   const SpeedResult result = RunSpeed(plan, progress);
-  if (options.json != "-") fmt::print("{}", ToTable(result));
+  if (options.json != "-" && options.markdown != "-") fmt::print("{}", ToTable(result));
+  const nlohmann::ordered_json as_json = ToJson(result, CommandWords());
   if (json) {
-    json->Commit(ToJson(result, CommandWords())
-                     .dump(1, ' ', false, nlohmann::json::error_handler_t::replace) +
-                 "\n");
+    json->Commit(as_json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }
+  if (markdown) markdown->Commit(MarkdownOf(as_json, options));
   if (result.partial) {
     std::fputs("definite: interrupted; the result is partial: what was complete by then\n", stderr);
     return kInterrupted;
@@ -106,6 +134,15 @@ void AddSpeed(CLI::App& app, int& exit_code) {
                    "Also N elements scatter-added to a block-sparse matrix (default: 1e5; 0: not)")
       ->type_name("N");
   AddJsonOption(*command, options->json);
+  command
+      ->add_option("--markdown", options->markdown,
+                   "Write the tables of docs/how-we-measure.md to FILE ('-' for standard output);\n"
+                   "they need the signed quadratic rows in all rings")
+      ->type_name("FILE");
+  command
+      ->add_option("--from", options->from,
+                   "Measure nothing: those tables of an earlier --json FILE")
+      ->type_name("FILE");
   command->footer(
       "The rows of an energy are timed in turn, in random order, on the same configurations. A\n"
       "floor is the time that its additions, multiplications and fused multiply-adds, its\n"
