@@ -136,7 +136,7 @@ void AddSpeed(CLI::App& app, int& exit_code) {
   AddJsonOption(*command, options->json);
   command
       ->add_option("--markdown", options->markdown,
-                   "Write the tables of docs/how-we-measure.md to FILE ('-' for standard output);\n"
+                   "Write tables as Markdown to FILE ('-' for standard output);\n"
                    "they need the signed quadratic rows in all rings")
       ->type_name("FILE");
   command

@@ -48,6 +48,12 @@ const std::vector<Study> kStudies = {
     {"vertex-face", "collision/vertex_face/signed/quadratic/", 12.31, 11.12},
     {"edge-edge", "collision/edge_edge/signed/quadratic/", 13.01, 12.04}};
 
+// "vertex_face/signed/quadratic/analytic" of "collision/.../f64x8".
+std::string ShortName(const std::string& kernel) {
+  const std::size_t family = std::string("collision/").size();
+  return kernel.substr(family, kernel.rfind('/') - family);
+}
+
 std::string Overheads(const Json& result) {
   std::vector<std::vector<std::string>> table = {{"what is timed", "", "analytic", "G-N", "ratio"}};
   for (const Study& study : kStudies) {
@@ -126,8 +132,7 @@ std::string Jobs(const Json& result) {
                  total = seconds.at("total");
     if (kernel != name) alone = total;
     kernel = name;
-    const std::size_t family = std::string("collision/").size();
-    table.push_back({name.substr(family, name.find("/quadratic") - family),
+    table.push_back({ShortName(name).substr(0, ShortName(name).rfind("/quadratic")),
                      fmt::format("{}", job.at("threads").get<int>()), ns(draw), ns(frame),
                      ns(hessian - frame), ns(packed - hessian), fmt::format("{:.2f}", total),
                      fmt::format("{:.2f}", alone / total)});
@@ -140,7 +145,7 @@ std::string Jobs(const Json& result) {
 
 std::string Assemblies(const Json& result) {
   std::vector<std::vector<std::string>> table = {
-      {"row", "threads", "row alone", "scatter-added", "speed-up"}};
+      {"row, 8 lanes", "threads", "row alone", "scatter-added", "speed-up"}};
   std::string kernel;
   double alone = 0;
   for (const Json& one : result.at("speed").at("assemblies")) {
@@ -148,7 +153,7 @@ std::string Assemblies(const Json& result) {
     const double ns = one.at("assembled_ns").at("median");
     if (kernel != name) alone = ns;
     kernel = name;
-    table.push_back({name, fmt::format("{}", one.at("threads").get<int>()),
+    table.push_back({ShortName(name), fmt::format("{}", one.at("threads").get<int>()),
                      Number(one.at("kernel_ns").at("median")), Number(ns),
                      fmt::format("{:.2f}", alone / ns)});
   }

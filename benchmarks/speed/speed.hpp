@@ -68,8 +68,8 @@ std::string_view LevelName(Level level);
 nlohmann::ordered_json ToJson(const SpeedResult& result, const std::vector<std::string>& command);
 std::string ToTable(const SpeedResult& result);  // at 100 columns
 
-// Of a result as JSON, so that a published file gives the same again: the tables of
-// docs/how-we-measure.md. Throws where it lacks one of their rows.
+// Of a result as JSON, so that a published file gives the same again: what analytic over
+// Gauss-Newton depends on, all rows, jobs, assemblies. Throws where it lacks a row that it needs.
 std::string ToMarkdown(const nlohmann::ordered_json& result);
 
 }  // namespace definite
