@@ -218,6 +218,12 @@ Json FrozenClaim(const Json& result) {
                   holds ? "it is" : "it is not", *exact));
 }
 
+// Of the configurations: those that numeric was timed on.
+std::string TimedShareOf(const Json& result, const std::string& pairs) {
+  const Json timing = TimingOf(RowOf(result, kTable1[0].energy, "numeric/f64"), pairs);
+  return timing.is_null() ? "none" : Percent(timing.at("share")) + " %";
+}
+
 // Seconds for 10^7 of "all" pairs or of the "active" ones.
 std::string Table1(const Json& result, const std::string& pairs) {
   const auto seconds = [&](const PublishedRow& p, const std::string& filter) {
@@ -244,13 +250,13 @@ std::string Table1(const Json& result, const std::string& pairs) {
          Paragraph(fmt::format(
              "Theirs on the left, ours on the right, analytic and Gauss-Newton (G-N) through the "
              "12x9 and 9x9 products of the reduced frame. Time of one core, {}, over {} "
-             "configurations of `{}`, seed {}.",
+             "configurations of `{}`, seed {}; numeric on {} of them, spread evenly.",
              timing.is_null() ? "not measured"
              : timing.at("clock") == "wall"
                  ? fmt::format("from wall time on {} threads", timing.at("threads").get<int>())
                  : "CPU time of one thread",
              WithCommas(first.at("count").get<std::uint64_t>()), kDistribution,
-             result.at("seed").get<std::uint64_t>()));
+             result.at("seed").get<std::uint64_t>(), TimedShareOf(result, pairs)));
 }
 
 std::string Forms(const Json& result) {
@@ -314,12 +320,14 @@ std::string Accuracy(const Json& result) {
     }
     text += "\n" + label + "\n\n" + MarkdownTable(table);
   }
-  return text + Paragraph(
-                    "ns: time of one core. Median, p99, max: distance to the nearest PSD matrix of "
-                    "the row's own Hessian. excess: how much more the filter changes it than it "
-                    "must, median; vast where that Hessian is PSD already. defect: the worst "
-                    "-lambda_min/(n u |F|), 50 is the bound. relabel.: how much the result depends "
-                    "on the numbering of the vertices, median.");
+  return text +
+         Paragraph(
+             "ns: time of one core. Median, p99, max: distance to the nearest PSD matrix of "
+             "the row's own Hessian. excess: how much more the filter changes it than it "
+             "must, median; vast where that Hessian is PSD already. defect: the worst "
+             "-lambda_min/(n u |F|), 50 is the bound. relabel.: how much the result depends "
+             "on the numbering of the vertices, median. The numeric rows are looked at on a sample "
+             "(docs/protocol.md); the JSON has each figure's count.");
 }
 
 std::string Claims(const Json& claims) {
