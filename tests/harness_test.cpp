@@ -32,6 +32,7 @@ SweepPlan Plan(std::uint64_t count, int threads) {
     if (row.energy->name == kEnergy || row.energy->name == kOther) plan.rows.push_back(&row);
   }
   plan.distribution = FindDistribution("active");
+  plan.samples.truth = 100;  // a millisecond each
   plan.count = count;
   plan.threads = threads;
   plan.timing = false;
@@ -446,10 +447,7 @@ TEST(Batch, TakesSomeConfigurationsAndFillsTheLastTileWithTheLast) {
 TEST(TimedPass, TimesEveryRowInEveryRound) {
   SweepPlan plan = Plan(20'000, 2);
   plan.timing = true;
-  EnergyResult energy{plan.rows[0]->energy, {}, {}, 0, 0};
-  for (const KernelRow* row : plan.rows) {
-    if (row->energy == energy.energy) energy.rows.push_back({row, {}, {}, {}});
-  }
+  EnergyResult energy = Prepare(plan).energies[0];
   Progress progress(false);
   RunTimedPass(plan, energy, progress);
   EXPECT_GT(energy.timed_cpu, 0);

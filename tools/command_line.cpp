@@ -11,6 +11,8 @@
 #include <numeric>
 #include <thread>
 
+#include "benchmarks/harness/merge.hpp"
+
 namespace definite {
 
 namespace {
@@ -193,6 +195,14 @@ nlohmann::ordered_json ReadResult(const std::string& option, const std::string& 
         fmt::format("{} '{}': expected a result of definite, schema definite/1", option, path));
   }
   return json;
+}
+
+SweepResult ReadSweep(const std::string& option, const std::string& path) {
+  try {
+    return FromJson(ReadResult(option, path));
+  } catch (const MergeError& error) {
+    throw UsageError(fmt::format("{} '{}': {}", option, path, error.what()));
+  }
 }
 
 std::uint64_t RunOptions::Count() const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "benchmarks/harness/sampling/distribution.hpp"
+#include "benchmarks/harness/sweep.hpp"
 #include "kernels/kernel.hpp"
 
 namespace definite {
@@ -45,6 +46,9 @@ std::vector<ParameterValue> ParseOverrides(const std::vector<std::string>& words
 // A result that definite wrote. Throws UsageError, naming the option, if the file is not one.
 nlohmann::ordered_json ReadResult(const std::string& option, const std::string& path);
 
+// A sweep's, with its histograms. Throws UsageError likewise.
+SweepResult ReadSweep(const std::string& option, const std::string& path);
+
 // What a run over many configurations is told.
 struct RunOptions {
   std::string default_count = "1e7", quick_count = "1e5", seed = "42";
@@ -73,6 +77,10 @@ void AddReplay(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddReproduce(CLI::App& app, int& exit_code);
 void AddVerify(CLI::App& app, int& exit_code);
+void AddMerge(CLI::App& app, int& exit_code);
+void AddCompare(CLI::App& app, int& exit_code);
+void AddDoctor(CLI::App& app, int& exit_code);
+void AddExport(CLI::App& app, int& exit_code);
 
 // The words of the command line, as given.
 const std::vector<std::string>& CommandWords();

@@ -72,6 +72,10 @@ int Run(int argc, char** argv) {
   AddList(app, exit_code);
   AddReproduce(app, exit_code);
   AddVerify(app, exit_code);
+  AddMerge(app, exit_code);
+  AddCompare(app, exit_code);
+  AddDoctor(app, exit_code);
+  AddExport(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version

@@ -60,6 +60,8 @@ void OutputFile::Commit(const std::string& content) {
   if (direct) return;
   if (fsync(descriptor_) != 0) Fail("write");
   if (rename(temporary_.c_str(), target_.c_str()) != 0) Fail("rename onto");
+  close(descriptor_);
+  descriptor_ = -1;
   temporary_.clear();
 }
 

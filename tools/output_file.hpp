@@ -18,8 +18,8 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // Throws UsageError if the disk is full or anything else goes wrong; the file at the path is then
-  // as it was.
+  // May be called again: the file at the path is the last one. Throws UsageError if the disk is
+  // full or anything else goes wrong; the file at the path is then as it was.
   void Commit(const std::string& content);
 
  private:

@@ -13,15 +13,16 @@
 #include <set>
 
 #include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/clock.hpp"
 
 namespace definite {
 
 namespace {
 
-constexpr std::int64_t kBlock = 256;
+constexpr std::int64_t kChunk = 256;  // configurations whose outputs are held at a time
 
-// Outputs of one row for a block, in both layouts. Kept from block to block: fresh memory for each
-// cost an eighth of the pass.
+// Outputs of one row for a chunk, in both layouts. Kept from chunk to chunk: fresh memory for
+// each cost an eighth of the pass.
 class RowOutputs {
  public:
   explicit RowOutputs(const KernelRow& row) : row_(&row) {}
@@ -88,6 +89,13 @@ struct Statistics {
   std::vector<std::uint64_t> checksums;  // of the rows at one configuration
 };
 
+// Sums, so that the digest of a block is a difference.
+std::uint64_t Digest(const Statistics& statistics) {
+  std::uint64_t digest = 0, weight = 1;
+  for (const RowStatistics& row : statistics.rows) digest += (weight += 2) * row.checksum;
+  return digest;
+}
+
 void Add(const Examiner& examiner, std::span<const RowOutput> outputs, std::uint64_t index,
          Statistics& statistics) {
   statistics.energy.Add(examiner.Configuration(), index);
@@ -118,10 +126,10 @@ std::set<std::uint64_t> WorstCases(const EnergyResult& result) {
   return indices;
 }
 
-// Runs rows over blocks of configurations, and judges what they made. One for each thread.
-class BlockCheck {
+// Runs rows over chunks of configurations, and judges what they made. One for each thread.
+class ChunkCheck {
  public:
-  BlockCheck(const SweepPlan& plan, const EnergyRow& energy, std::span<const KernelRow* const> rows)
+  ChunkCheck(const SweepPlan& plan, const EnergyRow& energy, std::span<const KernelRow* const> rows)
       : plan_(plan),
         examiner_(energy, rows),
         batch_(energy, plan.overrides),
@@ -209,7 +217,7 @@ class BlockCheck {
   int dofs_;
   std::vector<const KernelRow*> rows_;
   std::map<const KernelRow*, RowOutputs> outputs_;
-  std::vector<std::int64_t> sampled_;  // configurations of the block that all rows run on
+  std::vector<std::int64_t> sampled_;  // configurations of the chunk that all rows run on
   TileMeasures of_exact_, of_nearest_;
   std::vector<MeasuredRow> measured_;
   std::vector<RowOutput> asked_;
@@ -217,29 +225,31 @@ class BlockCheck {
 
 }  // namespace
 
-bool RunCheckedPass(const SweepPlan& plan, EnergyResult& result, Progress& progress) {
+std::size_t CheckBlocks(const SweepPlan& plan, std::span<const Block> blocks, double seconds,
+                        EnergyResult& result, Progress& progress) {
   std::vector<const KernelRow*> rows;
   for (const RowResult& r : result.rows) rows.push_back(r.row);
-  const auto blocks =
-      static_cast<std::int64_t>((plan.count + kBlock - 1) / static_cast<std::uint64_t>(kBlock));
-
-  std::atomic<std::int64_t> next_block{0};
+  const double start = WallSeconds();
+  std::atomic<std::size_t> next_block{0};
   std::vector<Statistics> parts(static_cast<std::size_t>(plan.threads));
+  std::vector<std::uint64_t> digests(blocks.size());
 #pragma omp parallel num_threads(plan.threads)
   {
     Statistics& mine = parts[static_cast<std::size_t>(omp_get_thread_num())];
     mine.rows.resize(rows.size());
-    BlockCheck check(plan, *result.energy, rows);
-    // Blocks are handed out in order and always finished, so that an interrupted pass covers a
-    // prefix.
-    while (!Interrupted()) {
-      const std::int64_t block = next_block++;
-      if (block >= blocks) break;
-      const auto first = static_cast<std::uint64_t>(block * kBlock);
-      const auto size =
-          std::min<std::int64_t>(kBlock, static_cast<std::int64_t>(plan.count - first));
-      check.Run(first, size, mine);
-      progress.Advance(static_cast<std::uint64_t>(size));
+    ChunkCheck check(plan, *result.energy, rows);
+    // Blocks are handed out in order and always finished, so that those done are the first ones.
+    while (!Interrupted() && WallSeconds() - start < seconds) {
+      const std::size_t b = next_block++;
+      if (b >= blocks.size()) break;
+      const std::uint64_t before = Digest(mine);
+      for (std::uint64_t first = blocks[b].first; first < blocks[b].end; first += kChunk) {
+        const auto size =
+            std::min<std::int64_t>(kChunk, static_cast<std::int64_t>(blocks[b].end - first));
+        check.Run(first, size, mine);
+        progress.Advance(static_cast<std::uint64_t>(size));
+      }
+      digests[b] = Digest(mine) - before;
     }
   }
   for (const Statistics& part : parts) {
@@ -248,7 +258,14 @@ bool RunCheckedPass(const SweepPlan& plan, EnergyResult& result, Progress& progr
       result.rows[r].statistics.Merge(part.rows[r]);
     }
   }
+  const std::size_t done = std::min(next_block.load(), blocks.size());
+  for (std::size_t b = 0; b < done; ++b) result.blocks[blocks[b].first] = digests[b];
+  return done;
+}
 
+void ExamineWorstCases(const SweepPlan& plan, EnergyResult& result) {
+  std::vector<const KernelRow*> rows;
+  for (const RowResult& r : result.rows) rows.push_back(r.row);
   Examiner examiner(*result.energy, rows);
   Batch batch(*result.energy, plan.overrides);
   for (std::uint64_t index : WorstCases(result)) {
@@ -257,11 +274,10 @@ bool RunCheckedPass(const SweepPlan& plan, EnergyResult& result, Progress& progr
     for (std::size_t r = 0; r < rows.size(); ++r) {
       result.rows[r].worst_cases[index] = examiner.Row(r);
       if (!DepthOf(index, plan.count, plan.samples).truth) {
-        result.rows[r].statistics.AddTruth(examiner.Row(r), index);
+        result.rows[r].of_worst_cases.AddTruth(examiner.Row(r), index);
       }
     }
   }
-  return !Interrupted();
 }
 
 }  // namespace definite

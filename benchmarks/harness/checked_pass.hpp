@@ -6,9 +6,13 @@
 
 namespace definite {
 
-// Checks the rows of one energy over the plan's configurations and fills in the statistics, which
-// are the same for any number of threads. Returns false if interrupted: the statistics then cover
-// the configurations before some index, all of them.
-bool RunCheckedPass(const SweepPlan& plan, EnergyResult& result, Progress& progress);
+// Checks the rows of one energy over blocks of the plan, in their order, for about so many seconds,
+// or until interrupted; blocks that were begun are finished. Adds to the statistics, which are the
+// same for any number of threads, and returns how many blocks it did.
+std::size_t CheckBlocks(const SweepPlan& plan, std::span<const Block> blocks, double seconds,
+                        EnergyResult& result, Progress& progress);
+
+// Looks at the worst case of each figure of each row again, in float128.
+void ExamineWorstCases(const SweepPlan& plan, EnergyResult& result);
 
 }  // namespace definite

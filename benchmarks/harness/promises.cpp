@@ -42,6 +42,13 @@ Words WordsOf(Property property) {
 
 std::string_view PropertyName(Property property) { return WordsOf(property).name; }
 
+std::optional<Property> PropertyNamed(std::string_view name) {
+  for (Property property : kProperties) {
+    if (PropertyName(property) == name) return property;
+  }
+  return std::nullopt;
+}
+
 std::string PromiseTable() {
   std::string table = "Every filter promises these properties:\n";
   for (Property property : kProperties) {

@@ -3,6 +3,7 @@
 // What the filters promise, for people.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,7 @@ inline constexpr std::array<Property, 10> kProperties = {
 
 // "finite", "psd", ...: as JSON and tables have it.
 std::string_view PropertyName(Property property);
+std::optional<Property> PropertyNamed(std::string_view name);
 
 // The properties with their meaning, then each filter with what it is exempt from and why:
 // kernels/PROMISES.txt.

@@ -22,6 +22,10 @@ Json Number(double value) {
   return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
 }
 
+bool HasHistograms(Detail detail) {
+  return detail == Detail::kWithHistograms || detail == Detail::kCanonical;
+}
+
 Json Point(const SweepPlan& plan, const EnergyRow& energy, const Worst& worst,
            const std::optional<double>& exact, Detail detail) {
   Json point = {{"value", Number(worst.value)}, {"index", worst.index}};
@@ -43,7 +47,11 @@ Json ToJson(const Figure& figure, const SweepPlan& plan, const EnergyRow& energy
             const std::map<std::uint64_t, RowFigures>& worst_cases,
             std::optional<double> RowFigures::*exact, Detail detail) {
   const auto summary = figure.Summarize();
-  if (!summary) return nullptr;
+  if (!summary && figure.NanCount() == 0) return nullptr;
+  if (!summary) {
+    return {{"count", 0},     {"nan", figure.NanCount()}, {"min", nullptr}, {"median", nullptr},
+            {"p99", nullptr}, {"p999", nullptr},          {"max", nullptr}, {"histogram", nullptr}};
+  }
   std::optional<double> value;
   if (const auto at = worst_cases.find(summary->max.index); exact && at != worst_cases.end()) {
     value = at->second.*exact;
@@ -56,7 +64,7 @@ Json ToJson(const Figure& figure, const SweepPlan& plan, const EnergyRow& energy
                {"p999", Number(summary->p999)},
                {"max", Point(plan, energy, summary->max, value, detail)}};
   json["histogram"] = nullptr;
-  if (detail == Detail::kWithHistograms) {
+  if (HasHistograms(detail)) {
     json["histogram"] = Json::array();
     for (const Histogram::Bucket& bucket : figure.Values().Buckets()) {
       json["histogram"].push_back({bucket.lower, bucket.count});
@@ -97,7 +105,7 @@ std::optional<MedianEstimate> RatioTo(const RowResult* baseline, const RowResult
 }
 
 Json TimingToJson(const SweepPlan& plan, const EnergyResult& energy, const RowResult& r,
-                  const char* pairs, Rounds rounds) {
+                  const char* pairs, Rounds rounds, Detail detail) {
   Json timing;
   timing["pairs"] = pairs;
   timing["threads"] = plan.threads;
@@ -109,6 +117,9 @@ Json TimingToJson(const SweepPlan& plan, const EnergyResult& energy, const RowRe
   timing["ring_configurations"] = kRing;
   timing["stages"] = {"frame", "hessian", "filter", "write"};
   timing["ns_per_hessian"] = ToJson(EstimateMedian(r.timing.*rounds), 1e9);
+  if (HasHistograms(detail)) {
+    for (double seconds : r.timing.*rounds) timing["samples"].push_back(1e9 * seconds);
+  }
   for (std::string_view filter : kBaselines) {
     timing["ratio_to"][std::string(filter)] =
         ToJson(RatioTo(Baseline(energy, filter), r, rounds), 1);
@@ -119,6 +130,30 @@ Json TimingToJson(const SweepPlan& plan, const EnergyResult& energy, const RowRe
 
 double Fraction(std::uint64_t part, std::uint64_t whole) {
   return whole ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+using Broken = std::map<Property, std::uint64_t>;
+
+// With what float128 found in worst cases.
+Broken AllBroken(const RowResult& r) {
+  RowStatistics all = r.statistics;
+  all.Merge(r.of_worst_cases);
+  return all.broken;
+}
+
+Json ToJson(const Broken& broken) {
+  Json json = Json::array();
+  for (const auto& [property, index] : broken) {
+    json.push_back({{"property", PropertyName(property)}, {"index", index}});
+  }
+  return json;
+}
+
+// The greatest alone.
+Json ToJson(const Figure& figure) {
+  const auto summary = figure.Summarize();
+  if (!summary) return nullptr;
+  return {{"value", Number(summary->max.value)}, {"index", summary->max.index}};
 }
 
 Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowResult& r,
@@ -138,17 +173,24 @@ Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowR
   }
   row["count"] = e.count;
   row["active"] = e.active;
+  if (HasHistograms(detail)) {
+    row["indefinite"] = e.indefinite;
+    row["out_of_domain"] = e.out_of_domain;
+  }
   row["active_fraction"] = e.count ? Json(Fraction(e.active, e.count)) : Json();
   row["indefinite_fraction"] = e.active ? Json(Fraction(e.indefinite, e.active)) : Json();
   row["timing"] = Json::array();
-  if (!r.timing.all.empty()) {
-    row["timing"].push_back(TimingToJson(plan, energy, r, "all", &RowTiming::all));
+  const bool timed = detail != Detail::kCanonical;
+  if (timed && !r.timing.all.empty()) {
+    row["timing"].push_back(TimingToJson(plan, energy, r, "all", &RowTiming::all, detail));
   }
-  if (!r.timing.active.empty()) {
-    row["timing"].push_back(TimingToJson(plan, energy, r, "active", &RowTiming::active));
+  if (timed && !r.timing.active.empty()) {
+    row["timing"].push_back(TimingToJson(plan, energy, r, "active", &RowTiming::active, detail));
   }
   const auto figure = [&](const Figure& f, std::optional<double> RowFigures::*exact) {
-    return ToJson(f, plan, *energy.energy, r.worst_cases, exact, detail);
+    static const std::map<std::uint64_t, RowFigures> kNone;
+    return ToJson(f, plan, *energy.energy, detail == Detail::kCanonical ? kNone : r.worst_cases,
+                  exact, detail);
   };
   const auto unless_brief = [&](const Figure& f) {
     return detail == Detail::kBrief ? Json() : figure(f, nullptr);
@@ -168,12 +210,41 @@ Json RowToJson(const SweepResult& result, const EnergyResult& energy, const RowR
   for (std::size_t v = 0; v < s.verdicts.size(); ++v) {
     row["verdicts"][std::string(kVerdictNames[v])] = s.verdicts[v];
   }
-  row["broken_promises"] = Json::array();
-  for (const auto& [property, index] : s.broken) {
-    row["broken_promises"].push_back({{"property", PropertyName(property)}, {"index", index}});
+  if (detail == Detail::kWithHistograms) {
+    const RowStatistics& w = r.of_worst_cases;
+    row["worst_cases"] = {{"rounding", ToJson(w.rounding)},
+                          {"conditioned_rounding", ToJson(w.conditioned_rounding)},
+                          {"broken_promises", ToJson(w.broken)}};
   }
+  row["broken_promises"] = ToJson(HasHistograms(detail) ? s.broken : AllBroken(r));
   row["checksum"] = fmt::format("{:016x}", s.checksum);
   return row;
+}
+
+Json ToJson(const SweepPlan& plan) {
+  Json json = {{"kernels", Json::array()},
+               {"distribution", plan.distribution->name},
+               {"set", Json::object()},
+               {"seed", plan.seed},
+               {"count", plan.count},
+               {"samples",
+                {{"definition", plan.samples.definition},
+                 {"spectrum", plan.samples.spectrum},
+                 {"truth", plan.samples.truth}}}};
+  for (const KernelRow* row : plan.rows) json["kernels"].push_back(row->name);
+  for (const ParameterValue& p : plan.overrides) json["set"][std::string(p.name)] = p.value;
+  return json;
+}
+
+Json BlocksToJson(const SweepResult& result) {
+  Json json = Json::object();
+  for (const EnergyResult& energy : result.energies) {
+    Json& blocks = json[energy.energy->name] = Json::array();
+    for (const auto& [first, digest] : energy.blocks) {
+      blocks.push_back({first, fmt::format("{:016x}", digest)});
+    }
+  }
+  return json;
 }
 
 // More processes wanted to run than there were cores: a twentieth of the timed pass went to others.
@@ -230,11 +301,19 @@ Json ToJson(std::span<const SweepResult> results, const std::vector<std::string>
   Json json;
   json["schema"] = "definite/1";
   json["protocol"] = ProtocolHash();
-  json["command"] = command;
-  json["machine"] = DescribeMachine(first.load_before, std::ranges::any_of(results, IsNoisy));
+  if (detail != Detail::kCanonical) {
+    json["command"] = command;
+    json["machine"] = DescribeMachine(first.load_before, std::ranges::any_of(results, IsNoisy));
+  }
   json["build"] = DescribeBuild();
   json["seed"] = first.plan.seed;
-  json["partial"] = std::ranges::any_of(results, &SweepResult::partial);
+  json["partial"] = detail == Detail::kCanonical
+                        ? !std::ranges::all_of(results, IsWhole)
+                        : std::ranges::any_of(results, &SweepResult::partial);
+  if (HasHistograms(detail)) {
+    json["plan"] = ToJson(first.plan);
+    json["blocks"] = BlocksToJson(first);
+  }
   json["rows"] = Json::array();
   for (const SweepResult& result : results) {
     for (const EnergyResult& energy : result.energies) {
@@ -249,7 +328,8 @@ Json ToJson(std::span<const SweepResult> results, const std::vector<std::string>
 std::string Dump(const Json& json, Detail detail) {
   // A path among the command's words need not be UTF-8.
   constexpr auto kReplace = Json::error_handler_t::replace;
-  if (detail != Detail::kBrief) return json.dump(1, ' ', false, kReplace) + "\n";
+  if (HasHistograms(detail)) return json.dump(-1, ' ', false, kReplace) + "\n";
+  if (detail == Detail::kSummaries) return json.dump(1, ' ', false, kReplace) + "\n";
   std::string text = "{";
   for (const auto& [key, value] : json.items()) {
     text += fmt::format("{}\n \"{}\": ", text == "{" ? "" : ",", key);
@@ -282,6 +362,8 @@ std::string ToTable(const SweepResult& result) {
                          "Hessian", "/ this", "median", "p99", "max", "max", "defect", "verdict");
     for (const RowResult& r : energy.rows) {
       const RowStatistics& s = r.statistics;
+      Figure conditioned_rounding = s.conditioned_rounding;
+      conditioned_rounding.Merge(r.of_worst_cases.conditioned_rounding);
       const auto time = EstimateMedian(r.timing.all);
       const auto ratio = RatioTo(Baseline(energy, "numeric"), r, &RowTiming::all);
       table +=
@@ -290,7 +372,7 @@ std::string ToTable(const SweepResult& result) {
                       ratio ? fmt::format("{:.1f}", ratio->median) : "-",
                       Short(s.distance, &Figure::Summary::median),
                       Short(s.distance, &Figure::Summary::p99), ShortMax(s.distance),
-                      ShortMax(s.conditioned_rounding), ShortMax(s.psd_defect), VerdictSummary(s));
+                      ShortMax(conditioned_rounding), ShortMax(s.psd_defect), VerdictSummary(s));
     }
     table += "\n";
   }
@@ -319,7 +401,7 @@ std::string BrokenPromises(const SweepResult& result) {
   std::string lines;
   for (const EnergyResult& energy : result.energies) {
     for (const RowResult& r : energy.rows) {
-      for (const auto& [property, index] : r.statistics.broken) {
+      for (const auto& [property, index] : AllBroken(r)) {
         lines += fmt::format("{} promises to be {} and is not:\n  {}\n", r.row->name,
                              PropertyName(property), ReplayCommand(result.plan, *r.row, index));
       }

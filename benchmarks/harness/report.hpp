@@ -10,9 +10,11 @@
 
 namespace definite {
 
-// How much of the figures is written. kBrief is for tables over many energies: distance, excess,
-// PSD defect and relabelling, worst cases by their index alone.
-enum class Detail { kBrief, kSummaries, kWithHistograms };
+// How much is written. kBrief is for tables over many energies: distance, excess, PSD defect and
+// relabelling, worst cases by their index alone. kCanonical is what is the same however a sweep was
+// shared out: its plan instead of the command, no machine, no timing, and nothing that float128
+// found in worst cases, since a part has others than the whole.
+enum class Detail { kBrief, kSummaries, kWithHistograms, kCanonical };
 
 nlohmann::ordered_json ToJson(const SweepResult& result, const std::vector<std::string>& command,
                               Detail detail = Detail::kWithHistograms);
@@ -20,7 +22,8 @@ nlohmann::ordered_json ToJson(const SweepResult& result, const std::vector<std::
 nlohmann::ordered_json ToJson(std::span<const SweepResult> results,
                               const std::vector<std::string>& command, Detail detail);
 
-// JSON as text: one key a line, but each row in one line if brief.
+// JSON as text: in one line with histograms; else one key a line, but each row in one line if
+// brief.
 std::string Dump(const nlohmann::ordered_json& json, Detail detail);
 
 // Readable at 100 columns.

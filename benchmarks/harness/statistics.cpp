@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace definite {
 namespace {
@@ -68,6 +69,15 @@ std::vector<Histogram::Bucket> Histogram::Buckets() const {
 
 void Worst::Merge(const Worst& other) {
   if (other.value > value || (other.value == value && other.index < index)) *this = other;
+}
+
+Figure Figure::Of(Histogram values, double min, Worst max, std::uint64_t nan_count) {
+  Figure figure;
+  figure.values_ = std::move(values);
+  figure.min_ = min;
+  figure.max_ = max;
+  figure.nan_count_ = nan_count;
+  return figure;
 }
 
 void Figure::Add(double value, std::uint64_t index) {

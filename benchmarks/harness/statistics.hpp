@@ -62,6 +62,9 @@ class Figure {
     Worst max;
   };
 
+  // What a figure that was written down holds. The caller sees to it that the parts fit.
+  static Figure Of(Histogram values, double min, Worst max, std::uint64_t nan_count);
+
   void Add(double value, std::uint64_t index);
   void Merge(const Figure& other);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <utility>
 
 #include "benchmarks/harness/checked_pass.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
@@ -95,42 +94,107 @@ bool IsSampled(const KernelRow& row) {
   return row.filter.starts_with("numeric") || row.filter == "absolute_numeric";
 }
 
-std::vector<SweepResult> RunSweeps(std::span<const SweepPlan> plans, Progress& progress) {
-  std::vector<SweepResult> results;
-  std::uint64_t timed = 0, checked = 0;
-  for (const SweepPlan& plan : plans) {
-    SweepResult& result = results.emplace_back();
-    result.plan = plan;
-    if (double load; getloadavg(&load, 1) == 1) result.load_before = load;
-    for (const KernelRow* row : plan.rows) {
-      auto at = std::ranges::find(result.energies, row->energy, &EnergyResult::energy);
-      if (at == result.energies.end()) {
-        result.energies.push_back({row->energy, {}, {}, 0, 0});
-        at = result.energies.end() - 1;
-      }
-      at->rows.push_back({row, {}, {}, {}});
+SweepResult Prepare(const SweepPlan& plan) {
+  SweepResult result;
+  result.plan = plan;
+  if (double load; getloadavg(&load, 1) == 1) result.load_before = load;
+  for (const KernelRow* row : plan.rows) {
+    auto at = std::ranges::find(result.energies, row->energy, &EnergyResult::energy);
+    if (at == result.energies.end()) {
+      result.energies.push_back({row->energy, {}, {}, {}, 0, 0});
+      at = result.energies.end() - 1;
     }
-    const std::uint64_t total = plan.count * result.energies.size();
-    checked += total;
-    if (plan.timing) timed += total;
+    at->rows.push_back({row, {}, {}, {}, {}});
   }
-  if (timed) progress.Start("timed pass", timed);
+  return result;
+}
+
+bool IsWhole(const SweepResult& result) {
+  const std::size_t all = BlocksOf(result.plan.count, {}).size();
+  return std::ranges::all_of(
+      result.energies, [all](const EnergyResult& energy) { return energy.blocks.size() == all; });
+}
+
+namespace {
+
+std::uint64_t Size(std::span<const Block> blocks) {
+  return blocks.empty() ? 0 : blocks.back().end - blocks.front().first;
+}
+
+void RunTimedPasses(std::span<SweepResult> results, Progress& progress) {
+  std::uint64_t total = 0;
+  for (const SweepResult& result : results) {
+    if (!result.plan.timing) continue;
+    total += Size(BlocksOf(result.plan.count, result.plan.shard)) * result.energies.size();
+  }
+  if (total) progress.Start("timed pass", total);
   for (SweepResult& result : results) {
     if (!result.plan.timing) continue;
     for (EnergyResult& energy : result.energies) RunTimedPass(result.plan, energy, progress);
   }
-  progress.Start("checked pass", checked);
-  for (SweepResult& result : results) {
-    for (EnergyResult& energy : result.energies) {
-      if (!RunCheckedPass(result.plan, energy, progress)) result.partial = true;
+}
+
+// The blocks of the plan's shard that are not in the result yet.
+std::vector<Block> Missing(const SweepPlan& plan, const EnergyResult& energy) {
+  std::vector<Block> blocks = BlocksOf(plan.count, plan.shard);
+  std::erase_if(blocks, [&](const Block& block) { return energy.blocks.contains(block.first); });
+  return blocks;
+}
+
+void RunCheckedPasses(std::span<SweepResult> results, Progress& progress,
+                      const RunControl& control) {
+  std::uint64_t total = 0;
+  for (const SweepResult& result : results) {
+    if (!result.plan.checks) continue;
+    for (const EnergyResult& energy : result.energies) {
+      for (const Block& block : Missing(result.plan, energy)) total += block.Size();
     }
   }
+  if (total) progress.Start("checked pass", total);
+  for (SweepResult& result : results) {
+    if (!result.plan.checks) continue;
+    for (EnergyResult& energy : result.energies) {
+      const std::vector<Block> missing = Missing(result.plan, energy);
+      std::span<const Block> rest = missing;
+      while (!rest.empty() && !Interrupted()) {
+        const double seconds = control.checkpoint ? control.checkpoint_seconds : 1e300;
+        rest = rest.subspan(CheckBlocks(result.plan, rest, seconds, energy, progress));
+        if (control.checkpoint) control.checkpoint(result);
+      }
+      if (!rest.empty()) result.partial = true;
+    }
+    for (EnergyResult& energy : result.energies) ExamineWorstCases(result.plan, energy);
+  }
+}
+
+}  // namespace
+
+std::vector<SweepResult> RunSweeps(std::span<const SweepPlan> plans, Progress& progress) {
+  std::vector<SweepResult> results;
+  for (const SweepPlan& plan : plans) results.push_back(Prepare(plan));
+  RunTimedPasses(results, progress);
+  RunCheckedPasses(results, progress, {});
   progress.Finish();
   return results;
 }
 
-SweepResult RunSweep(const SweepPlan& plan, Progress& progress) {
-  return std::move(RunSweeps({&plan, 1}, progress).front());
+SweepResult RunSweep(const SweepPlan& plan, Progress& progress, const RunControl& control) {
+  SweepResult result = Prepare(plan);
+  if (control.earlier) {
+    // Of the same plan, so the energies and their rows are in the same order.
+    for (std::size_t e = 0; e < result.energies.size(); ++e) {
+      EnergyResult& energy = result.energies[e];
+      energy.statistics = control.earlier->energies[e].statistics;
+      energy.blocks = control.earlier->energies[e].blocks;
+      for (std::size_t r = 0; r < energy.rows.size(); ++r) {
+        energy.rows[r].statistics = control.earlier->energies[e].rows[r].statistics;
+      }
+    }
+  }
+  RunTimedPasses({&result, 1}, progress);
+  RunCheckedPasses({&result, 1}, progress, control);
+  progress.Finish();
+  return result;
 }
 
 }  // namespace definite

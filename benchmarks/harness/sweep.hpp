@@ -5,12 +5,14 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "benchmarks/harness/blocks.hpp"
 #include "benchmarks/harness/bootstrap.hpp"
 #include "benchmarks/harness/examine.hpp"
 #include "benchmarks/harness/progress.hpp"
@@ -33,8 +35,9 @@ struct SweepPlan {
   Samples samples;
   std::uint64_t seed = 42;
   std::uint64_t count = 10'000'000;
+  Shard shard;  // only these of the count
   int threads = 1;
-  bool timing = true;
+  bool timing = true, checks = true;
 };
 
 // Seconds per configuration of one row, a number for each round: of all configurations, and of
@@ -43,7 +46,8 @@ struct RowTiming {
   std::vector<double> all, active;
 };
 
-// What the checked pass knows of one row.
+// What the checked pass knows of one row, of the configurations of some blocks; that of more blocks
+// is the merger of both.
 struct RowStatistics {
   Figure distance, excess, psd_defect, majorises, relabelling, rounding, conditioned_rounding;
   std::array<std::uint64_t, kVerdictCount> verdicts{};
@@ -53,7 +57,7 @@ struct RowStatistics {
   std::map<Property, std::uint64_t> broken;  // property -> smallest index
 
   void Add(const RowFigures& figures, std::uint64_t index);
-  // Only what float128 added of a configuration that was counted before.
+  // Only what float128 says of a configuration.
   void AddTruth(const RowFigures& figures, std::uint64_t index);
   void Merge(const RowStatistics& other);
 };
@@ -71,13 +75,18 @@ struct RowResult {
   const KernelRow* row;
   RowTiming timing;
   RowStatistics statistics;
-  std::map<std::uint64_t, RowFigures> worst_cases;  // looked at again in float128, by index
+  // The worst cases of all rows in float128, by index; what is not in the statistics already.
+  std::map<std::uint64_t, RowFigures> worst_cases;
+  RowStatistics of_worst_cases;
 };
 
 struct EnergyResult {
   const EnergyRow* energy;
   EnergyStatistics statistics;
   std::vector<RowResult> rows;
+  // The blocks that were checked, by their first configuration, with a sum over the bits of all
+  // outputs.
+  std::map<std::uint64_t, std::uint64_t> blocks;
   // Of the timed pass, over all threads: with less processor time than wall time, other work had
   // its share of the machine.
   double timed_cpu = 0, timed_wall = 0;
@@ -90,12 +99,26 @@ struct SweepResult {
   bool partial = false;
 };
 
+// Of nothing yet.
+SweepResult Prepare(const SweepPlan& plan);
+
+// What a long run is told besides.
+struct RunControl {
+  const SweepResult* earlier = nullptr;  // of the same plan: its blocks are not checked again
+  // Called between blocks with what is complete, every so often.
+  std::function<void(const SweepResult&)> checkpoint;
+  double checkpoint_seconds = 20;
+};
+
 // Runs both passes. Stops at the next block when interrupted (progress.hpp); what is complete by
-// then is a prefix of the configurations, and the result says that it is partial.
-SweepResult RunSweep(const SweepPlan& plan, Progress& progress);
+// then are the first blocks of each energy, and the result says that it is partial.
+SweepResult RunSweep(const SweepPlan& plan, Progress& progress, const RunControl& control = {});
 
 // Runs the timed passes of all plans, then the checked ones; the progress is that of all.
 std::vector<SweepResult> RunSweeps(std::span<const SweepPlan> plans, Progress& progress);
+
+// Whether all blocks of all energies were checked, those of other shards too.
+bool IsWhole(const SweepResult& result);
 
 // Whether a row is looked at only where definitions are (Samples): an eigendecomposition of each
 // matrix by itself takes microseconds, and is what the others are compared with.

@@ -90,13 +90,16 @@ int TimedRounds(std::uint64_t count) {
 void RunTimedPass(const SweepPlan& plan, EnergyResult& result, Progress& progress) {
   const EnergyRow& energy = *result.energy;
   std::vector<RowResult>& rows = result.rows;
-  const int rounds = TimedRounds(plan.count);
+  const std::vector<Block> shard = BlocksOf(plan.count, plan.shard);
+  if (shard.empty()) return;
+  const std::uint64_t begin = shard.front().first, count = shard.back().end - begin;
+  const int rounds = TimedRounds(count);
   const auto threads = static_cast<std::size_t>(plan.threads);
   for (int round = 0; round < rounds; ++round) {
-    const std::uint64_t first =
-        plan.count * static_cast<std::uint64_t>(round) / static_cast<std::uint64_t>(rounds);
-    const std::uint64_t last =
-        plan.count * static_cast<std::uint64_t>(round + 1) / static_cast<std::uint64_t>(rounds);
+    const auto round_begin = [&](int r) {
+      return begin + count * static_cast<std::uint64_t>(r) / static_cast<std::uint64_t>(rounds);
+    };
+    const std::uint64_t first = round_begin(round), last = round_begin(round + 1);
     // Equal blocks, as many for each thread, so that none waits for another.
     const auto size_of_round = static_cast<std::int64_t>(last - first);
     const std::int64_t blocks = CeilDivide(size_of_round, kBlock * plan.threads) * plan.threads;
@@ -129,14 +132,14 @@ void RunTimedPass(const SweepPlan& plan, EnergyResult& result, Progress& progres
           stopped = true;
           continue;
         }
-        const std::uint64_t begin = first + static_cast<std::uint64_t>(block * block_size);
-        if (begin >= last) continue;  // fewer tiles than threads
-        const auto size = std::min(block_size, static_cast<std::int64_t>(last - begin));
+        const std::uint64_t at = first + static_cast<std::uint64_t>(block * block_size);
+        if (at >= last) continue;  // fewer tiles than threads
+        const auto size = std::min(block_size, static_cast<std::int64_t>(last - at));
         mine.cpu -= ThreadSeconds();
         mine.wall -= WallSeconds();
-        block_of_all.Draw(*plan.distribution, plan.seed, begin, WholeTiles(size));
+        block_of_all.Draw(*plan.distribution, plan.seed, at, WholeTiles(size));
         parts.Split(block_of_all, size);
-        for (std::size_t r : ShuffledOrder(rows.size(), plan.seed, begin)) {
+        for (std::size_t r : ShuffledOrder(rows.size(), plan.seed, at)) {
           for (std::size_t part : {Parts::kActive, Parts::kIdle}) {
             mine.seconds[r][part] += parts.TimeOf(part, *rows[r].row, ring.Data(), clock);
           }

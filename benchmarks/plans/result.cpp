@@ -23,7 +23,7 @@ double NumberOf(const Json& value) {
 
 std::optional<double> Entry(const Json& row, const std::string& figure, const std::string& entry) {
   const Json& f = row.at("accuracy").at(figure);
-  if (f.is_null()) return std::nullopt;
+  if (f.is_null() || f.at(entry).is_null()) return std::nullopt;  // no value, or none but NaN
   return NumberOf(entry == "max" ? f.at("max").at("value") : f.at(entry));
 }
 

@@ -142,6 +142,9 @@ Json ToJson(const SpeedResult& result, const std::vector<std::string>& command) 
                               {{"numeric", ToJson(row.to_numeric, 1)},
                                {"gauss_newton", ToJson(row.to_gauss_newton, 1)}}},
                              {"floor", ToJson(row.floor)}});
+    for (double seconds : row.seconds) {
+      speed["rows"].back()["samples"].push_back(1e9 * seconds);
+    }
   }
   speed["jobs"] = Json::array();
   for (const JobTime& job : result.jobs) {
