@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <memory>
+#include <sstream>
 
 namespace definite {
 
@@ -16,19 +16,20 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Medians = std::map<std::string, double>;
 
+// As a word for the shell.
 std::string Quoted(const std::string& word) {
-  std::string text = "'";
-  for (char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
+  std::string text;
+  for (char c : word) c == '\'' ? text += "'\\''" : text += c;
+  return fmt::format("'{}'", text);
 }
 
 std::string OutputOf(const std::string& command) {
   std::FILE* const pipe = popen(command.c_str(), "r");
   if (!pipe) throw CompareError("cannot start: " + command);
-  std::string text;
+  std::ostringstream text;
   std::array<char, 65536> buffer;
   while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-    text.append(buffer.data(), n);
+    text.write(buffer.data(), static_cast<std::streamsize>(n));
   }
   const int status = pclose(pipe);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
@@ -38,12 +39,12 @@ std::string OutputOf(const std::string& command) {
                                        : fmt::format("signal {}", WTERMSIG(status)),
                                    command));
   }
-  return text;
+  return text.str();
 }
 
 Medians Run(const std::string& program, const PairedPlan& plan) {
   std::string command = Quoted(program) + " sweep --no-checks --threads 1 --json -";
-  for (const std::string& word : plan.arguments) command += " " + Quoted(word);
+  for (const std::string& word : plan.arguments) command += fmt::format(" {}", Quoted(word));
   const Json result = Json::parse(OutputOf(command), nullptr, false);
   if (result.is_discarded()) throw CompareError("this wrote no JSON:\n  " + command);
   Medians medians;
