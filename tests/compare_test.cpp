@@ -162,6 +162,19 @@ TEST(Accuracy, IsLostAtAnySizeBeyondRounding) {
             1u);
 }
 
+TEST(Accuracy, IsLostInAWorstCaseToo) {
+  Json now = Result();
+  now["rows"][0]["worst_cases"]["broken_promises"] =
+      Json::array({{{"property", "accurate"}, {"index", 4}}});
+  EXPECT_EQ(CompareAccuracy(Result(), now).losses.size(), 1u);
+}
+
+TEST(Compare, OfNothingInCommonIsNoComparison) {
+  std::vector<Timed> now = TimesOfRun(1, 1);
+  now[0].key = "another";
+  EXPECT_THROW(Compare(TimesOfRun(0, 1), now, {}, {}), CompareError);
+}
+
 TEST(Accuracy, ThatIsGainedIsNotLost) {
   Json base = Result();
   base["rows"][0]["accuracy"]["distance"]["max"]["value"] = 2.0;

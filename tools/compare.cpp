@@ -121,12 +121,10 @@ int RunCompareCommand(const Options& options) {
     RequireSame(options, *options.again, base, other);
     again = Of(*options.again, [&] { return TimesOf(other); });
   }
+  const std::vector<Timed> old_times = Of(options.base, [&] { return TimesOf(base); }),
+                           new_times = Of(options.now, [&] { return TimesOf(now); });
   const Comparison comparison =
-      Compare(Of(options.base, [&] { return TimesOf(base); }),
-              Of(options.now, [&] { return TimesOf(now); }), again, limits);
-  if (comparison.rows.empty()) {
-    throw UsageError(fmt::format("'{}' and '{}' have no row in common", options.base, options.now));
-  }
+      Of(options.now, [&] { return Compare(old_times, new_times, again, limits); });
   Write(comparison, options, json, markdown);
   return comparison.Regressed() ? kBroken : kOk;
 }
@@ -142,20 +140,22 @@ void AddCompare(CLI::App& app, int& exit_code) {
   CLI::Option* accuracy = command->add_flag(
       "--accuracy", options->accuracy,
       "Distances, defects, rounding, verdicts and broken promises instead of times");
-  command
-      ->add_option("--aa", options->again,
-                   "Another run of the base, whose differences from it are the noise floor")
-      ->type_name("FILE");
+  CLI::Option* again =
+      command
+          ->add_option("--aa", options->again,
+                       "Another run of the base, whose differences from it are the noise floor")
+          ->type_name("FILE");
   command
       ->add_option("--threshold", options->threshold,
                    "Least slowdown that counts, in percent (default: 3)")
       ->type_name("P");
-  command->add_flag("--across", options->across,
-                    "Compare although machine, build, protocol or plan differ");
+  CLI::Option* across = command->add_flag(
+      "--across", options->across, "Compare although machine, build, protocol or plan differ");
   CLI::Option* paired = command->add_flag(
       "--paired", options->paired,
       "BASE and NEW are two programs, in turn (A B B A): what decides small changes");
-  paired->excludes(accuracy);
+  paired->excludes(accuracy)->excludes(again)->excludes(across);
+  accuracy->excludes(again);
   AddKernelsOption(*command, options->kernels)
       ->description(
           "With --paired: rows with such a name (default: analytic, split, nearest and\n"

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <set>
 
 #include "benchmarks/compare/significance.hpp"
 
@@ -31,7 +33,7 @@ std::string Threads(const Json& timing) {
 }
 
 void AddTimes(const std::string& key, const Json& timing, std::vector<Timed>& times) {
-  if (!timing.contains("samples")) return;
+  if (!timing.contains("samples") || timing.at("samples").empty()) return;
   times.push_back({key, timing.at("samples").get<std::vector<double>>()});
 }
 
@@ -154,6 +156,7 @@ Comparison Compare(const std::vector<Timed>& base, const std::vector<Timed>& now
     comparison.rows.push_back(
         {timed.key, Median(timed.ns), Median(*other->second), *ratio, 1, Compared::kSame});
   }
+  if (comparison.rows.empty()) throw CompareError("the two have no row in common");
   if (again) {
     comparison.floor_from_aa = true;
     noise.clear();
@@ -179,12 +182,11 @@ Comparison Compare(const std::vector<Timed>& base, const std::vector<Timed>& now
 
 namespace {
 
-// A figure that may be missing, infinite or NaN: the greater, the worse. NaN is worst.
+// A figure that may be missing or infinite: the greater, the worse. NaNs are counted apart, as a
+// verdict.
 double Size(const Json& value) {
   if (value.is_null()) return 0;
-  if (!value.is_string()) return value.get<double>();
-  return value == "nan" ? std::numeric_limits<double>::max()
-                        : std::numeric_limits<double>::infinity();
+  return value.is_string() ? std::numeric_limits<double>::infinity() : value.get<double>();
 }
 
 // Whether a figure is greater by more than rounding does. Relative distances are good to about
@@ -238,15 +240,18 @@ void CompareRow(const std::string& key, const Json& base, const Json& now,
     if (count == other || verdict == "pass") continue;
     (other > count ? comparison.losses : comparison.gains).push_back({key, verdict, count, other});
   }
-  const Json &a = base.at("broken_promises"), &b = now.at("broken_promises");
-  const auto names = [](const Json& broken) {
-    std::vector<std::string> properties;
-    for (const Json& promise : broken) properties.push_back(promise.at("property"));
-    std::ranges::sort(properties);
+  // With what float128 found in worst cases, where the result keeps that apart.
+  const auto names = [](const Json& row) {
+    std::set<std::string> properties;
+    const auto add = [&](const Json& broken) {
+      for (const Json& promise : broken) properties.insert(promise.at("property"));
+    };
+    add(row.at("broken_promises"));
+    if (row.contains("worst_cases")) add(row.at("worst_cases").at("broken_promises"));
     return properties;
   };
-  const std::vector<std::string> before = names(a), after = names(b);
-  const auto join = [](const std::vector<std::string>& words) {
+  const std::set<std::string> before = names(base), after = names(now);
+  const auto join = [](const std::set<std::string>& words) {
     return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
   };
   const Loss change = {key, "broken promises", join(before), join(after)};

@@ -55,7 +55,8 @@ struct Comparison {
 
 // Round by round: the rounds of two runs of one plan have the same configurations. A row is slower
 // if its ratio differs from 1 after the correction for many comparisons and is beyond both the
-// floor and the threshold. `again`, another run of the base, gives the floor.
+// floor and the threshold. `again`, another run of the base, gives the floor. Throws
+// CompareError if the two have no row in common.
 Comparison Compare(const std::vector<Timed>& base, const std::vector<Timed>& now,
                    const std::optional<std::vector<Timed>>& again, const Limits& limits);
 

@@ -32,7 +32,8 @@ std::string OutputOf(const std::string& command) {
     text.write(buffer.data(), static_cast<std::streamsize>(n));
   }
   const int status = pclose(pipe);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+  // Ctrl-C ends the program too.
+  if (!Interrupted() && (!WIFEXITED(status) || WEXITSTATUS(status) != 0)) {
     throw CompareError(fmt::format("this failed, with {}:\n  {}",
                                    WIFEXITED(status)
                                        ? fmt::format("exit code {}", WEXITSTATUS(status))
@@ -46,6 +47,7 @@ Medians Run(const std::string& program, const PairedPlan& plan) {
   std::string command = Quoted(program) + " sweep --no-checks --threads 1 --json -";
   for (const std::string& word : plan.arguments) command += fmt::format(" {}", Quoted(word));
   const Json result = Json::parse(OutputOf(command), nullptr, false);
+  if (Interrupted()) return {};
   if (result.is_discarded()) throw CompareError("this wrote no JSON:\n  " + command);
   Medians medians;
   for (const Timed& timed : TimesOf(result)) {

@@ -6,7 +6,6 @@
 // resumed.
 
 #include <cstdint>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
