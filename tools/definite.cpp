@@ -64,7 +64,7 @@ int Run(int argc, char** argv) {
       "  definite sweep --quick\n"
       "  definite sweep --kernels 'collision/*/analytic/*' --count 1e6 --json result.json\n"
       "  definite verify --quick\n"
-      "\nExit codes: 0 all is well, 1 a promise is broken or something is worse, 2 bad input, 130 interrupted.");
+      "\nExit codes: 0 all is well, 1 a promise is broken or something worse, 2 bad input, 130 interrupted.");
   int exit_code = kOk;
   AddSweep(app, exit_code);
   AddSpeed(app, exit_code);
