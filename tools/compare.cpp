@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CompareOptions {
   std::string base, now;
   std::optional<std::string> again, json, markdown;
   std::string threshold = "3";
@@ -29,7 +29,7 @@ struct Options {
   std::string count = "2e5", rounds = "15", distribution = "active", seed = "42";
 };
 
-Limits LimitsOf(const Options& options) {
+Limits LimitsOf(const CompareOptions& options) {
   double percent = 0;
   const char* const last = options.threshold.data() + options.threshold.size();
   const auto [end, error] = std::from_chars(options.threshold.data(), last, percent);
@@ -55,7 +55,7 @@ auto Of(const std::string& path, F what) {
   }
 }
 
-void RequireSame(const Options& options, const std::string& path, const Json& base,
+void RequireSame(const CompareOptions& options, const std::string& path, const Json& base,
                  const Json& other) {
   if (options.across) return;
   const std::string differences = Of(path, [&] { return Differences(base, other); });
@@ -67,14 +67,14 @@ void RequireSame(const Options& options, const std::string& path, const Json& ba
 }
 
 template <class C>
-void Write(const C& comparison, const Options& options, std::optional<OutputFile>& json,
+void Write(const C& comparison, const CompareOptions& options, std::optional<OutputFile>& json,
            std::optional<OutputFile>& markdown) {
   if (options.json != "-" && options.markdown != "-") fmt::print("{}", ToTable(comparison));
   if (json) json->Commit(ToJson(comparison).dump(1) + "\n");
   if (markdown) markdown->Commit(ToMarkdown(comparison));
 }
 
-int RunCompareCommand(const Options& options) {
+int RunCompareCommand(const CompareOptions& options) {
   const Limits limits = LimitsOf(options);
   std::optional<OutputFile> json, markdown;
   if (options.json) json.emplace("--json", *options.json);
@@ -132,7 +132,7 @@ int RunCompareCommand(const Options& options) {
 }  // namespace
 
 void AddCompare(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompareOptions>();
   CLI::App* command = app.add_subcommand("compare", "Says what became slower, or less accurate");
   command->add_option("BASE", options->base, "A result of sweep or speed; a program if --paired")
       ->required();

@@ -14,11 +14,11 @@ namespace definite {
 
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string file, to = "github-action-benchmark", out = "-";
 };
 
-int RunExportCommand(const Options& options) {
+int RunExportCommand(const ExportOptions& options) {
   if (options.to != "github-action-benchmark") {
     throw UsageError(fmt::format("--to '{}': expected github-action-benchmark", options.to));
   }
@@ -38,7 +38,7 @@ int RunExportCommand(const Options& options) {
 }  // namespace
 
 void AddExport(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportOptions>();
   CLI::App* command =
       app.add_subcommand("export", "Writes the times of a result as another tool reads them");
   command->add_option("FILE", options->file, "A result of sweep or speed")->required();

@@ -14,12 +14,12 @@ namespace definite {
 
 namespace {
 
-struct Options {
+struct MergeOptions {
   std::vector<std::string> files;
   std::optional<std::string> json;
 };
 
-int RunMergeCommand(const Options& options) {
+int RunMergeCommand(const MergeOptions& options) {
   std::optional<OutputFile> json;
   if (options.json) json.emplace("--json", *options.json);
   std::vector<SweepResult> parts;
@@ -44,7 +44,7 @@ int RunMergeCommand(const Options& options) {
 }  // namespace
 
 void AddMerge(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MergeOptions>();
   CLI::App* command = app.add_subcommand("merge", "Puts the parts of a sweep together");
   command->add_option("FILE", options->files, "Results of 'definite sweep' or of merge")
       ->type_name("FILE...")

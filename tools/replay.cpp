@@ -16,7 +16,7 @@ namespace definite {
 
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::string kernel, distribution = "active", seed = "42", index;
   std::vector<std::string> overrides;
   bool json = false;
@@ -32,7 +32,7 @@ struct Replay {
   std::vector<std::vector<double>> outputs;
 };
 
-Replay Load(const Options& options) {
+Replay Load(const ReplayOptions& options) {
   Replay replay;
   replay.chosen = &RowNamed(options.kernel);
   replay.plan.distribution = &DistributionNamed(options.distribution);
@@ -163,7 +163,7 @@ nlohmann::ordered_json AsJson(const Replay& replay, const Examiner& examiner) {
 }
 
 // Exit 1 if the row asked for breaks a promise here.
-int RunReplay(const Options& options) {
+int RunReplay(const ReplayOptions& options) {
   const Replay replay = Load(options);
   Examiner examiner(*replay.chosen->energy, replay.rows);
   examiner.Examine(replay.x.data(), replay.p.data(), Depth::kTruth);
@@ -186,7 +186,7 @@ int RunReplay(const Options& options) {
 }  // namespace
 
 void AddReplay(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = app.add_subcommand(
       "replay", "Shows one configuration whole: inputs, eigenvalues, filters, verdicts");
   command->add_option("--kernel", options->kernel, "Full name of a row (required)")

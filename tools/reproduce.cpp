@@ -16,7 +16,7 @@ namespace definite {
 
 namespace {
 
-struct Options {
+struct ReproduceOptions {
   RunOptions run;
   std::vector<std::string> kernels;
   std::optional<std::string> json, markdown, from;
@@ -32,7 +32,7 @@ nlohmann::ordered_json Read(const Plan& plan, const std::string& path) {
 }
 
 // The plan's sweeps, of those rows that were asked for and can be drawn.
-std::vector<SweepPlan> SweepsOf(const Plan& plan, const Options& options) {
+std::vector<SweepPlan> SweepsOf(const Plan& plan, const ReproduceOptions& options) {
   if (!options.kernels.empty() && !plan.divisible) {
     throw UsageError(fmt::format("--kernels '{}': the tables of {} need all their rows",
                                  options.kernels.front(), plan.name));
@@ -75,7 +75,7 @@ std::vector<SweepPlan> SweepsOf(const Plan& plan, const Options& options) {
   return sweeps;
 }
 
-int RunReproduce(const Plan& plan, const Options& options) {
+int RunReproduce(const Plan& plan, const ReproduceOptions& options) {
   std::optional<OutputFile> json_file, markdown_file;
   std::vector<SweepPlan> sweeps;
   if (!options.from) sweeps = SweepsOf(plan, options);
@@ -126,7 +126,7 @@ const Plan& PlanNamed(const std::string& name) {
 }  // namespace
 
 void AddReproduce(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReproduceOptions>();
   const auto name = std::make_shared<std::string>();
   options->run.default_count = "the plan's";
   CLI::App* command = app.add_subcommand(

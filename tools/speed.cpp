@@ -14,7 +14,7 @@ namespace definite {
 
 namespace {
 
-struct Options {
+struct SpeedOptions {
   std::vector<std::string> kernels = {"collision/*/signed/quadratic/*"};
   std::string distribution = "active", seed = "42";
   std::vector<std::string> rings = {"L1", "L2", "memory"};
@@ -31,7 +31,7 @@ nlohmann::ordered_json ReadSpeed(const std::string& path) {
   return json;
 }
 
-std::string MarkdownOf(const nlohmann::ordered_json& json, const Options& options) {
+std::string MarkdownOf(const nlohmann::ordered_json& json, const SpeedOptions& options) {
   try {
     return ToMarkdown(json);
   } catch (const std::exception& error) {
@@ -48,7 +48,7 @@ Level LevelNamed(const std::string& name) {
 }
 
 // Measures nothing.
-int ShowEarlier(const Options& options) {
+int ShowEarlier(const SpeedOptions& options) {
   std::optional<OutputFile> file;
   if (options.markdown) file.emplace("--markdown", *options.markdown);
   const std::string markdown = MarkdownOf(ReadSpeed(*options.from), options);
@@ -56,7 +56,7 @@ int ShowEarlier(const Options& options) {
   return kOk;
 }
 
-int RunSpeedCommand(const Options& options) {
+int RunSpeedCommand(const SpeedOptions& options) {
   if (options.from) return ShowEarlier(options);
   SpeedPlan plan;
   plan.rows = RowsMatching(options.kernels, Outputs::kAll);
@@ -100,7 +100,7 @@ int RunSpeedCommand(const Options& options) {
 }  // namespace
 
 void AddSpeed(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SpeedOptions>();
   CLI::App* command = app.add_subcommand(
       "speed", "Times rows against each other, with the floor that the machine sets");
   AddKernelsOption(*command, options->kernels)

@@ -22,7 +22,7 @@ namespace definite {
 
 namespace {
 
-struct Options {
+struct SweepOptions {
   std::vector<std::string> kernels = {"*"};
   std::string distribution = "active";
   RunOptions run;
@@ -30,7 +30,7 @@ struct Options {
   bool no_timing = false, no_checks = false, resume = false;
 };
 
-SweepPlan PlanOf(const Options& options) {
+SweepPlan PlanOf(const SweepOptions& options) {
   SweepPlan plan;
   plan.rows = RowsMatching(options.kernels);
   plan.distribution = &DistributionNamed(options.distribution);
@@ -58,7 +58,7 @@ SweepPlan PlanOf(const Options& options) {
 }
 
 // What --resume finds, if anything.
-std::optional<SweepResult> Earlier(const Options& options, const SweepPlan& plan) {
+std::optional<SweepResult> Earlier(const SweepOptions& options, const SweepPlan& plan) {
   if (!options.resume) return std::nullopt;
   if (!options.json || options.json == "-") {
     throw UsageError("--resume: expected --json FILE, which keeps what is complete");
@@ -85,7 +85,7 @@ std::optional<SweepResult> RunOnRanks(const SweepPlan& plan, const Ranks& ranks,
 }
 
 // How the plan is shared out, where something says so.
-void ShareOut(const Options& options, const Ranks& ranks, SweepPlan& plan) {
+void ShareOut(const SweepOptions& options, const Ranks& ranks, SweepPlan& plan) {
   if (!ranks.Shared()) return;
   if (options.shard || options.resume || options.no_checks) {
     throw UsageError(
@@ -96,7 +96,7 @@ void ShareOut(const Options& options, const Ranks& ranks, SweepPlan& plan) {
 }
 
 // The table comes before the file: it is not lost with it where the disk is full.
-int Report(const SweepResult& result, const std::string& text, const Options& options,
+int Report(const SweepResult& result, const std::string& text, const SweepOptions& options,
            std::optional<OutputFile>& json) {
   if (options.json != "-") fmt::print("{}", ToTable(result));
   const std::string broken = BrokenPromises(result);
@@ -109,7 +109,7 @@ int Report(const SweepResult& result, const std::string& text, const Options& op
   return broken.empty() ? kOk : kBroken;
 }
 
-int RunSweepCommand(const Options& options) {
+int RunSweepCommand(const SweepOptions& options) {
   SweepPlan plan = PlanOf(options);
   const Ranks ranks;
   ShareOut(options, ranks, plan);
@@ -135,7 +135,7 @@ int RunSweepCommand(const Options& options) {
 }  // namespace
 
 void AddSweep(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SweepOptions>();
   CLI::App* command = app.add_subcommand(
       "sweep", "Times rows over drawn configurations, and checks what they give");
   AddKernelsOption(*command, options->kernels);

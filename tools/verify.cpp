@@ -18,14 +18,14 @@ namespace definite {
 
 namespace {
 
-struct Options {
+struct VerifyOptions {
   std::vector<std::string> kernels = {"*"};
   std::optional<std::string> distribution, index, json, markdown;
   RunOptions run;
   bool errata = false;
 };
 
-verify::Plan PlanOf(const Options& options) {
+verify::Plan PlanOf(const VerifyOptions& options) {
   verify::Plan plan;
   for (const KernelRow* row : RowsMatching(options.kernels)) {
     if (plan.subjects.empty() || plan.subjects.back().energy != row->energy) {
@@ -48,7 +48,7 @@ verify::Plan PlanOf(const Options& options) {
   return plan;
 }
 
-int PrintErrata(const Options& options) {
+int PrintErrata(const VerifyOptions& options) {
   std::optional<OutputFile> file;
   if (options.markdown) file.emplace("--markdown", *options.markdown);
   const std::string markdown = ShiKim2023Errata::Markdown();
@@ -57,7 +57,7 @@ int PrintErrata(const Options& options) {
   return kOk;
 }
 
-int RunVerify(const Options& options) {
+int RunVerify(const VerifyOptions& options) {
   if (options.errata) return PrintErrata(options);
   const verify::Plan plan = PlanOf(options);
   std::optional<OutputFile> json;
@@ -94,7 +94,7 @@ std::string Checks() {
 }  // namespace
 
 void AddVerify(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<VerifyOptions>();
   options->run.default_count = "1000";
   options->run.quick_count = "100";
   CLI::App* command = app.add_subcommand(

@@ -12,9 +12,7 @@ namespace definite {
 
 namespace {
 
-constexpr std::uint64_t kUnit = 256, kMostBlocks = 1024, kMostShards = 1'000'000;
-
-constexpr std::uint64_t CeilDivide(std::uint64_t a, std::uint64_t b) { return (a + b - 1) / b; }
+constexpr std::uint64_t kBlockUnit = 256, kMostBlocks = 1024, kMostShards = 1'000'000;
 
 std::optional<std::uint64_t> WholeNumber(std::string_view text) {
   std::uint64_t value = 0;
@@ -70,7 +68,7 @@ Shard ShardOfEnvironment() {
 }  // namespace
 
 std::uint64_t BlockSize(std::uint64_t count) {
-  return std::max(kUnit, CeilDivide(CeilDivide(count, kMostBlocks), kUnit) * kUnit);
+  return std::max(kBlockUnit, CeilDivide(CeilDivide(count, kMostBlocks), kBlockUnit) * kBlockUnit);
 }
 
 Block BlockAt(std::uint64_t first, std::uint64_t count) {

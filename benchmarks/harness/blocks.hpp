@@ -5,12 +5,18 @@
 // run is kept of whole blocks, so that parts of it can be put together and an interrupted one
 // resumed.
 
+#include <concepts>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace definite {
+
+template <std::integral I>
+constexpr I CeilDivide(I a, I b) {
+  return (a + b - 1) / b;
+}
 
 struct Block {
   std::uint64_t first, end;  // of the configurations

@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A number, or how JSON writes infinity.
-double Number(const Json& value) {
+double NumberFrom(const Json& value) {
   if (!value.is_string()) return value.get<double>();
   if (value == "inf") return std::numeric_limits<double>::infinity();
   throw MergeError(fmt::format("{}: expected a number", value.dump()));
@@ -42,15 +42,15 @@ Figure FigureOf(const Json& json) {
     return Figure::Of({}, std::numeric_limits<double>::infinity(), {}, nan);
   Histogram values;
   for (const Json& bucket : json.at("histogram")) {
-    values.Add(Number(bucket.at(0)), bucket.at(1).get<std::uint64_t>());
+    values.Add(NumberFrom(bucket.at(0)), bucket.at(1).get<std::uint64_t>());
   }
   if (values.Count() != json.at("count")) {
     throw MergeError(fmt::format("a histogram holds {} values, its figure {}", values.Count(),
                                  json.at("count").dump()));
   }
   const Json& max = json.at("max");
-  return Figure::Of(std::move(values), Number(json.at("min")),
-                    {Number(max.at("value")), max.at("index").get<std::uint64_t>()}, nan);
+  return Figure::Of(std::move(values), NumberFrom(json.at("min")),
+                    {NumberFrom(max.at("value")), max.at("index").get<std::uint64_t>()}, nan);
 }
 
 RowStatistics RowStatisticsOf(const Json& row) {
@@ -182,10 +182,10 @@ void RequireOnePlan(std::span<const SweepResult> parts) {
 }
 
 using Blocks = std::map<std::uint64_t, std::uint64_t>;
-using Parts = std::vector<const EnergyResult*>;
+using EnergyParts = std::vector<const EnergyResult*>;
 
 // All blocks of the parts; throws if two parts have different outputs of one.
-Blocks UnionOf(const Parts& parts) {
+Blocks UnionOf(const EnergyParts& parts) {
   Blocks all;
   for (const EnergyResult* part : parts) {
     for (const auto& [first, digest] : part->blocks) {
@@ -199,7 +199,7 @@ Blocks UnionOf(const Parts& parts) {
 
 // Chooses parts so that each block left is in exactly one of them; false if there are none. Tries
 // the parts in their order.
-bool Cover(const Parts& parts, Blocks left, Parts& chosen) {
+bool Cover(const EnergyParts& parts, Blocks left, EnergyParts& chosen) {
   if (left.empty()) return true;
   const std::uint64_t first = left.begin()->first;
   for (const EnergyResult* part : parts) {
@@ -219,12 +219,12 @@ bool Cover(const Parts& parts, Blocks left, Parts& chosen) {
 
 // Statistics cannot be taken apart again: parts that lie side by side make the whole, and what else
 // there is must agree with it.
-void MergeEnergy(Parts parts, EnergyResult& sum) {
+void MergeEnergy(EnergyParts parts, EnergyResult& sum) {
   sum.blocks = UnionOf(parts);
   std::ranges::stable_sort(parts, {}, [](const EnergyResult* part) {
     return -static_cast<std::ptrdiff_t>(part->blocks.size());
   });
-  Parts chosen;
+  EnergyParts chosen;
   if (!Cover(parts, sum.blocks, chosen)) {
     throw MergeError(fmt::format(
         "{}: two parts overlap and neither lies within the other; give the shards that they were "
@@ -254,7 +254,7 @@ SweepResult Merge(std::span<const SweepResult> parts) {
   RequireOnePlan(parts);
   SweepResult sum = Prepare(parts.front().plan);
   for (std::size_t e = 0; e < sum.energies.size(); ++e) {
-    Parts of_energy;
+    EnergyParts of_energy;
     for (const SweepResult& part : parts) of_energy.push_back(&part.energies[e]);
     MergeEnergy(std::move(of_energy), sum.energies[e]);
   }

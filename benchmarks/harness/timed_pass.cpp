@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/blocks.hpp"
 #include "benchmarks/harness/clock.hpp"
 
 namespace definite {
@@ -16,8 +17,6 @@ namespace {
 
 constexpr std::int64_t kBlock = 4096;  // at most drawn before the clock starts: inputs in L2
 constexpr int kMaxRounds = 15;
-
-constexpr std::int64_t CeilDivide(std::int64_t a, std::int64_t b) { return (a + b - 1) / b; }
 
 // Seconds that a row takes over the first `size` of the batch, its outputs going round in the ring.
 double TimeOf(const KernelRow& row, const Batch& batch, std::int64_t size, double* ring,

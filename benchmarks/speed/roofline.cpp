@@ -13,7 +13,7 @@ namespace definite {
 namespace {
 
 using L = Lanes<double, kNativeLanes>;
-constexpr double kShortest = 2e-3;  // seconds of one measurement
+constexpr double kShortestSweep = 2e-3;  // seconds of one measurement
 constexpr int kRounds = 9;
 
 // The most per second of `amount` that work(repetitions) does `repetitions` times over.
@@ -25,7 +25,7 @@ double BestRate(double amount, Work work) {
     const double start = ThreadSeconds();
     work(repetitions);
     seconds = ThreadSeconds() - start;
-    if (seconds > kShortest) break;
+    if (seconds > kShortestSweep) break;
   }
   for (int round = 1; round < kRounds; ++round) {
     const double start = ThreadSeconds();

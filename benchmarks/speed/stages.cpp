@@ -24,7 +24,7 @@ const KernelRow* OutputOf(const KernelRow& row, std::string_view output) {
   return at == AllOutputs().end() ? nullptr : &*at;
 }
 
-double TimeOf(const KernelRow& row, const Batch& batch, AlignedDoubles& ring) {
+double StageTime(const KernelRow& row, const Batch& batch, AlignedDoubles& ring) {
   const double start = WallSeconds();
   for (std::int64_t i = 0; i < batch.Size(); i += kAtOnce) {
     const std::int64_t size = std::min(kAtOnce, batch.Size() - i);
@@ -101,7 +101,7 @@ std::vector<JobTime> TimeJobs(const std::vector<const KernelRow*>& rows,
           drawing += WallSeconds() - start;
           const auto round = static_cast<std::uint64_t>(block);
           for (std::size_t s : ShuffledOrder(stages.size(), seed, round)) {
-            seconds[s] += TimeOf(*stages[s], batch, ring);
+            seconds[s] += StageTime(*stages[s], batch, ring);
           }
           progress.Advance(1);
         }
@@ -148,7 +148,7 @@ std::vector<AssemblyTime> TimeAssemblies(const std::vector<const KernelRow*>& ro
       const auto order = static_cast<std::uint64_t>(round + 1);
       for (std::size_t t : ShuffledOrder(threads.size(), seed, order)) {
         AssemblyTime& time = times[first + t];
-        const double kernel = TimeOf(*row, batch, ring);
+        const double kernel = StageTime(*row, batch, ring);
         matrix.SetZero();
         const double start = WallSeconds();
         assembly.Add(*row, mesh.x, mesh.p, time.threads, matrix);

@@ -24,5 +24,6 @@ std::optional<Finding> Worse(const std::optional<Finding>& a, const std::optiona
 }
 
 bool AppliesToAll(const Subject&) { return true; }
+bool HasFrame(const Subject& subject) { return !subject.energy->frame.empty(); }
 
 }  // namespace definite::verify

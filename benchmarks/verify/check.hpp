@@ -3,6 +3,7 @@
 // The checks of `definite verify`: what the paper's Matlab scripts did, and further. A check looks
 // at one configuration and tells by how much it misses its bound.
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -16,6 +17,8 @@ struct Finding {
   double violation;                // in units of the bound: above 1, or NaN, the check fails
   const KernelRow* row = nullptr;  // which it is about, if one of the rows
 };
+
+inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Check {
   std::string_view name;
@@ -40,5 +43,6 @@ std::optional<Finding> Worse(const std::optional<Finding>& a, const std::optiona
 
 // For Check::applies.
 bool AppliesToAll(const Subject& subject);
+bool HasFrame(const Subject& subject);
 
 }  // namespace definite::verify

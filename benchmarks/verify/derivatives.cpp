@@ -77,7 +77,7 @@ Numbers WorstOfHessian(Case& at) {
 }
 
 // Derivatives hold the closest points still there, so they are not those of the gradient.
-bool IsFrozen(const Case& at) {
+bool HoldsClosestPoints(const Case& at) {
   return at.Is("unsigned_frozen") || (at.Is("hybrid") && at.Region() != 0);
 }
 
@@ -132,7 +132,7 @@ std::optional<Finding> ValueDifferences(Case& at) {
 std::optional<Finding> GradientDifferences(Case& at) {
   const Numbers d = WorstOfHessian(at);
   const double h = Step(at);
-  if (IsFrozen(at) || !at.SameAround(d, 2 * h)) return std::nullopt;
+  if (HoldsClosestPoints(at) || !at.SameAround(d, 2 * h)) return std::nullopt;
   return Finding{AgainstDifferences(
       [&](const Quad& s) { return ToVector(at.GradientAt(Moved<double>(at.X(), d, s))); },
       at.Hessian() * ToVector(d), h, Rounding(at) * GradientScale(at),
@@ -155,7 +155,7 @@ std::optional<Finding> ReferenceGradient(Case& at) {
 
 std::optional<Finding> ReferenceHessian(Case& at) {
   const Numbers d = WorstOfHessian(at);
-  if (IsFrozen(at) || !at.SameAround(d, 2 * Step(at))) return std::nullopt;
+  if (HoldsClosestPoints(at) || !at.SameAround(d, 2 * Step(at))) return std::nullopt;
   const std::vector<Quad> p = Parameters(at);
   return Finding{AgainstDifferences(
       [&](const Quad& s) {

@@ -86,7 +86,6 @@ std::optional<Finding> OfSplit(Case& at) {
   return Finding{at.Ratio(errors.*kError, 1)};
 }
 
-bool HasFrame(const Subject& subject) { return !subject.energy->frame.empty(); }
 bool HasSplit(const Subject& subject) { return subject.energy->split.count > 0; }
 
 }  // namespace

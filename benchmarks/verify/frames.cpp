@@ -12,8 +12,6 @@ namespace definite::verify {
 
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 // An error against what rounding in float128 does to a number of that size. The weights of the
 // frame are quotients that cancel, the printed ones like 1/sin^2; the direction of c2 turns by
 // |x|/|l|.
@@ -178,7 +176,6 @@ std::optional<Finding> InertiaError(Case& at) {
       last == values.size() ? 0 : static_cast<double>(1000 * abs(values[last] / values[last - 1]))};
 }
 
-bool HasFrame(const Subject& subject) { return !subject.energy->frame.empty(); }
 bool HasReferenceFrame(const Subject& subject) { return subject.reference->frame != nullptr; }
 bool IsCollision(const Subject& subject) {
   return HasPart(subject.energy->name, "collision") && !HasPart(subject.energy->name, "mollified");

@@ -2,7 +2,6 @@
 // side of the pair and a stiffness of its own.
 
 #include <cmath>
-#include <limits>
 
 #include "benchmarks/harness/batch.hpp"
 #include "benchmarks/verify/check.hpp"
@@ -11,7 +10,6 @@ namespace definite::verify {
 
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kStiffness = 1.7;
 
 double LengthOf(const std::string& energy, const Numbers& x, const Numbers& p) {
