@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/machine.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 namespace definite {
 

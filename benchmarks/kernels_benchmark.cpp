@@ -8,7 +8,7 @@
 #include <map>
 
 #include "benchmarks/hand_fused.hpp"
-#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 namespace definite {
 namespace {

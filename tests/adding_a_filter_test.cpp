@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "example/kernels.hpp"
 #include "example/reference.hpp"
 #include "kernels/energies/collision_signed.hpp"

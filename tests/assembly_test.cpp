@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "benchmarks/harness/sampling/random.hpp"
 #include "kernels/assembly/block_sparse.hpp"
 

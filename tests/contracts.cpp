@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/examine.hpp"
 #include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 namespace definite::testing {
 

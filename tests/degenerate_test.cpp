@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/examine.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "benchmarks/harness/sampling/random.hpp"
 
 namespace definite {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "reference/closest_points.hpp"
 #include "reference/oracle.hpp"
 #include "tests/contracts.hpp"
@@ -223,10 +223,10 @@ std::vector<Numbers> DegenerateShapes(std::string_view stencil) {
             {1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3}};    // one point
   }
   if (stencil == "vertex_edge") {
-    return {{0.5, 0, 0, 0, 0, 0, 1, 0, 0},   // on the edge
-            {5, 0, 0, 0, 0, 0, 1, 0, 0},     // on its line
-            {0.5, 1, 0, 1, 0, 0, 1, 0, 0},   // an edge of length zero
-            {1, 2, 3, 1, 2, 3, 1, 2, 3}};    // one point
+    return {{0.5, 0, 0, 0, 0, 0, 1, 0, 0},  // on the edge
+            {5, 0, 0, 0, 0, 0, 1, 0, 0},    // on its line
+            {0.5, 1, 0, 1, 0, 0, 1, 0, 0},  // an edge of length zero
+            {1, 2, 3, 1, 2, 3, 1, 2, 3}};   // one point
   }
   if (stencil == "vertex_vertex") {
     return {{0, 0, 0, 0, 0, 0}, {1, 2, 3, 1, 2, 3}, {1e300, 0, 0, 1e300, 0, 0}};  // one point

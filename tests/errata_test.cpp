@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "benchmarks/plans/shi_kim_2023_errata.hpp"
 
 namespace definite {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "reference/oracle.hpp"
 
 namespace definite {

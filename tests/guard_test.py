@@ -370,6 +370,16 @@ class Recipes(InFolder):
         self.script("docs/examples/parallel.sh", *ROWS)
         self.assert_whole(self.folder / "whole.json")
 
+    @unittest.skipUnless(shutil.which("mpirun") and "libmpi" in subprocess.run(
+        ["ldd", PROGRAM], check=True, text=True, stdout=subprocess.PIPE).stdout,
+        "the program was built without MPI")
+    def test_ranks_of_mpirun(self):
+        for ranks in ("1", "2", "4"):
+            self.script("docs/examples/mpi.sh", *ROWS, RANKS=ranks,
+                        MPI_OPTIONS="--oversubscribe --allow-run-as-root")
+            self.assert_whole(self.folder / "whole.json")
+            (self.folder / "whole.json").unlink()
+
     def test_two_builds_held_against_each_other(self):
         program = os.path.abspath(PROGRAM)
         words = ["--kernels", f"{ENERGY}/none/f64", "--count", "4000", "--threshold", "50"]

@@ -9,9 +9,9 @@
 #include <limits>
 #include <thread>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/checked_pass.hpp"
 #include "benchmarks/harness/report.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
 #include "tests/contracts.hpp"
 

@@ -12,8 +12,8 @@
 
 #include "all_filters.hpp"
 #include "benchmarks/hand_fused.hpp"
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "kernels/energies/collision_mollified.hpp"
 #include "kernels/energies/collision_signed.hpp"
 #include "kernels/energies/strand_bend.hpp"

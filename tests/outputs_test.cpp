@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "kernels/core/counting.hpp"
 
 namespace definite {

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <memory>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/promises.hpp"
 #include "benchmarks/harness/report.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "tools/command_line.hpp"
 
 namespace definite {

@@ -12,8 +12,8 @@
 #include <map>
 #include <set>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/clock.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 namespace definite {
 

@@ -9,8 +9,8 @@
 #include <sstream>
 #include <thread>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/clock.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
 
 namespace definite {

@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 namespace definite {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 namespace definite {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/machine.hpp"
 #include "benchmarks/harness/promises.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
 
 namespace definite {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/blocks.hpp"
 #include "benchmarks/harness/clock.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 namespace definite {
 

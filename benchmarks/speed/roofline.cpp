@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/clock.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "kernels/core/lanes.hpp"
 
 namespace definite {

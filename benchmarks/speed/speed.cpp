@@ -8,8 +8,8 @@
 #include <map>
 #include <memory>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/clock.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
 #include "kernels/core/lanes.hpp"
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <string>
 
-#include "benchmarks/harness/batch.hpp"
 #include "benchmarks/harness/clock.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
 #include "kernels/assembly/block_sparse.hpp"
 

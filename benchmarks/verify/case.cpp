@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 namespace definite::verify {
 

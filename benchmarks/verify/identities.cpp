@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 #include "benchmarks/verify/check.hpp"
 
 namespace definite::verify {

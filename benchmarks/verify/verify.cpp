@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 namespace definite::verify {
 

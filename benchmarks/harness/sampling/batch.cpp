@@ -1,4 +1,4 @@
-#include "benchmarks/harness/batch.hpp"
+#include "benchmarks/harness/sampling/batch.hpp"
 
 #include <algorithm>
 
