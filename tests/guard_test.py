@@ -24,6 +24,8 @@ PROGRAM = sys.argv[1]
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 VALIDATOR = jsonschema.Draft202012Validator(json.loads((ROOT / "results/schema.json").read_text()))
 TIMEOUT = 120
+COMPARE_PY = pathlib.Path("/usr/share/benchmark/compare.py")  # where Debian has it
+MICRO = pathlib.Path(PROGRAM).parent / "benchmarks/kernels_benchmark"
 ENERGY = "collision/vertex_face/signed/quadratic"
 # Two energies, and rows that break rank: an indefinite one, one that is looked at in samples only.
 ROWS = [word for name in (f"{ENERGY}/none/f64", f"{ENERGY}/analytic/f64x8", f"{ENERGY}/numeric/f64",
@@ -374,11 +376,31 @@ class Recipes(InFolder):
         ["ldd", PROGRAM], check=True, text=True, stdout=subprocess.PIPE).stdout,
         "the program was built without MPI")
     def test_ranks_of_mpirun(self):
-        for ranks in ("1", "2", "4"):
-            self.script("docs/examples/mpi.sh", *ROWS, RANKS=ranks,
-                        MPI_OPTIONS="--oversubscribe --allow-run-as-root")
+        options = "--oversubscribe --allow-run-as-root"
+        for ranks in ("2", "4"):
+            self.script("docs/examples/mpi.sh", *ROWS, RANKS=ranks, MPI_OPTIONS=options)
             self.assert_whole(self.folder / "whole.json")
             (self.folder / "whole.json").unlink()
+        # An error on the first rank ends the others.
+        blocked = self.folder / "whole.json"
+        blocked.mkdir()
+        done = self.script("docs/examples/mpi.sh", *ROWS, code=2, RANKS="2", MPI_OPTIONS=options)
+        self.assertIn("--json 'whole.json'", done.stderr)
+
+    @unittest.skipUnless(COMPARE_PY.is_file() and MICRO.is_file(),
+                         "Google Benchmark's tools are not installed")
+    def test_google_benchmark_s_own_comparison(self):
+        for name in ("old", "new"):
+            subprocess.run([MICRO, f"--benchmark_filter=^{ENERGY}/(analytic|gauss_newton)/f64$",
+                            "--benchmark_min_time=0.01", "--benchmark_repetitions=3",
+                            f"--benchmark_out={self.folder / name}.json",
+                            "--benchmark_out_format=json"], check=True, timeout=TIMEOUT,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        done = subprocess.run(["/usr/bin/python3", COMPARE_PY, "benchmarks",
+                               self.folder / "old.json", self.folder / "new.json"], check=True,
+                              text=True, timeout=TIMEOUT, stdout=subprocess.PIPE)
+        for filter_name in ("analytic", "gauss_newton"):
+            self.assertRegex(done.stdout, rf"{ENERGY}/{filter_name}/f64_pvalue")
 
     def test_two_builds_held_against_each_other(self):
         program = os.path.abspath(PROGRAM)

@@ -76,6 +76,7 @@ int Run(int argc, char** argv) {
   AddCompare(app, exit_code);
   AddDoctor(app, exit_code);
   AddExport(app, exit_code);
+  AddReport(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version

@@ -5,6 +5,7 @@
 #include <mpi.h>
 
 #include <cstdlib>
+#include <exception>
 
 namespace definite {
 
@@ -29,7 +30,9 @@ Ranks::Ranks() {
 Ranks::~Ranks() {
   int started = 0;
   MPI_Initialized(&started);
-  if (started) MPI_Finalize();
+  // An error on one rank leaves the others waiting for what it never sends: a process that ends
+  // without this call makes the launcher end them too.
+  if (started && std::uncaught_exceptions() == 0) MPI_Finalize();
 }
 
 std::vector<std::string> Ranks::Gather(const std::string& text) const {

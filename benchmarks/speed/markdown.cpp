@@ -144,6 +144,7 @@ std::string Jobs(const Json& result) {
 }
 
 std::string Assemblies(const Json& result) {
+  if (result.at("speed").at("assemblies").empty()) return "";  // --elements 0
   std::vector<std::vector<std::string>> table = {
       {"row, 8 lanes", "threads", "row alone", "scatter-added", "speed-up"}};
   std::string kernel;

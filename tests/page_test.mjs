@@ -1,0 +1,131 @@
+// The report page in a browser, opened from disk: node page_test.mjs DEFINITE NPM_FOLDER
+//
+// Every chart is drawn, nothing is asked of the network, pickers and tables work, at both widths.
+import assert from "node:assert/strict";
+import { execFileSync, spawnSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+
+const [program, npm] = process.argv.slice(-2).map((path) => resolve(path));
+const { chromium } = createRequire(join(npm, "package.json"))("playwright-core");
+const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "..");
+const signed = "collision/vertex_face/signed/quadratic";
+const charts = ["pareto", "distribution", "relabelling", "floors", "stages"];
+let folder, page_file, browser;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "page-"));
+  const run = (...words) => execFileSync(program, words, { stdio: ["ignore", "ignore", "pipe"] });
+  const [sweep, speed] = ["sweep.json", "speed.json"].map((name) => join(folder, name));
+  run("sweep", "--count", "2000", "--json", sweep, ...["none/f64", "analytic/f64x8", "split/f64x8", "nearest/f64x8", "gauss_newton/f64", "numeric/f64"]
+    .flatMap((name) => ["--kernels", `${signed}/${name}`]));
+  run("speed", "--rounds", "3", "--job", "1e4", "--elements", "0", "--json", speed, "--kernels", `${signed}/analytic/f64x8`,
+      "--kernels", `${signed}/gauss_newton/f64x8`);
+  page_file = join(folder, "report.html");
+  run("report", sweep, speed, join(root, "results/published/shi-kim-2023.json"), "--out", page_file);
+  browser = await chromium.launch({
+    executablePath: "/usr/bin/chromium",
+    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+           "--disable-component-update", "--disable-sync"],
+  });
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true });
+});
+
+async function open(width, colorScheme) {
+  const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme });
+  const said = [];
+  page.on("console", (message) => said.push(message.text()));
+  page.on("pageerror", (error) => said.push(error.message));
+  page.on("request", (request) => request.url().startsWith("file:") || request.url().startsWith("blob:") || said.push(request.url()));
+  await page.goto(`file://${page_file}`);
+  for (const id of charts) await page.waitForSelector(`#${id} .chart svg`, { timeout: 20000 });
+  return { page, said };
+}
+
+const marks = (page, id) => page.locator(`#${id} .chart svg`).locator(".role-mark path, .role-mark line").count();
+const text = (page, id) => page.locator(`#${id} .chart svg`).textContent();
+
+for (const [width, scheme] of [[1280, "light"], [400, "dark"]]) {
+  test(`every chart is drawn, ${width} pixels wide, ${scheme}`, async () => {
+    const { page, said } = await open(width, scheme);
+    for (const id of charts) {
+      assert.ok(await marks(page, id) > 1, `${id} is empty`);
+      const [place, drawn] = await page.locator(`#${id} .chart`).evaluate((e) => [e.clientWidth, e.scrollWidth]);
+      assert.ok(drawn <= place + 1, `${id} is ${drawn} pixels wide where there are ${place}`);
+    }
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= width, `the page is ${wide} pixels wide`);
+    if (process.env.SCREENSHOTS) await page.screenshot({ path: join(process.env.SCREENSHOTS, `page-${width}.png`), fullPage: true });
+    assert.deepEqual(said, []);
+    await page.close();
+  });
+}
+
+test("pickers choose the axes", async () => {
+  const { page, said } = await open(1280, "light");
+  assert.match(await text(page, "pareto"), /distance to the nearest PSD matrix/);
+  await page.selectOption("#pareto select[name=error]", "relabelling");
+  await page.waitForFunction(() => document.querySelector("#pareto .chart svg")?.textContent.includes("spread over vertex numberings"));
+  await page.selectOption("#pareto select[name=cost]", "flops");
+  await page.waitForFunction(() => document.querySelector("#pareto .chart svg")?.textContent.includes("floating-point operations"));
+  assert.ok(await marks(page, "pareto") > 0);
+  await page.selectOption("#floors select[name=ring]", "memory");
+  assert.ok(await marks(page, "floors") > 1);
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
+test("a point tells its name, numbers and replay command", async () => {
+  const { page } = await open(1280, "light");
+  await page.locator("#pareto .mark-symbol.role-mark path").last().hover();
+  const tooltip = page.locator("#vg-tooltip-element");
+  await tooltip.waitFor({ state: "visible" });
+  assert.match(await tooltip.textContent(), /definite replay --kernel collision\/\S+ --distribution \w+ --seed 42 --index \d+/);
+  await page.close();
+});
+
+test("tables sort, and their data can be taken away", async () => {
+  const { page, said } = await open(1280, "light");
+  const table = page.locator("table").first();
+  const column = async () => (await table.locator("tbody tr td:nth-child(2)").allTextContents()).map(Number);
+  const drawn = await column();
+  await table.locator("th:nth-child(2) button").click();
+  assert.deepEqual(await column(), drawn.toSorted?.((a, b) => a - b) ?? [...drawn].sort((a, b) => a - b));
+  assert.equal(await table.locator("th:nth-child(2)").getAttribute("aria-sort"), "ascending");
+  await table.locator("th:nth-child(2) button").click();
+  assert.deepEqual(await column(), [...drawn].sort((a, b) => b - a));
+  const downloading = page.waitForEvent("download");
+  await page.locator("#pareto button").click();
+  const download = await downloading;
+  assert.equal(download.suggestedFilename(), "pareto.csv");
+  const lines = readFileSync(await download.path(), "utf8").trim().split("\n");
+  assert.match(lines[0], /kernel.*x.*y/);
+  assert.ok(lines.length > 6);
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
+test("what is no result is refused, and nothing is written", () => {
+  const out = join(folder, "no.html"), published = join(root, "results/published/shi-kim-2023.json");
+  const result = JSON.parse(readFileSync(published, "utf8"));
+  for (const [name, content, says] of [
+    ["text.json", "hello", "expected a result of definite"],
+    ["version.json", JSON.stringify({ ...result, schema: "definite/2" }), "schema definite/1"],
+    ["lacking.json", JSON.stringify({ ...result, rows: [{ kernel: "a" }] }), "results/schema.json"],
+    ["nothing.json", JSON.stringify({ ...result, rows: [], paper: null }), "nothing to draw"],
+    ["none.json", null, "cannot read"],
+  ]) {
+    if (content !== null) writeFileSync(join(folder, name), content);
+    const done = spawnSync(program, ["report", published, join(folder, name), "--out", out], { encoding: "utf8" });
+    assert.equal(done.status, 2, done.stderr);
+    assert.ok(done.stderr.includes(name) && done.stderr.includes(says), done.stderr);
+    assert.ok(!existsSync(out));
+  }
+});

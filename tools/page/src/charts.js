@@ -1,0 +1,192 @@
+// The charts, as Vega-Lite specifications with their data in them. `width` is that of the page.
+import { costs, errors, familyNames, groupBy, pareto, points, replay } from "./data.js";
+
+// Okabe and Ito's colours, which people tell apart however they see colour; black and yellow, which
+// one of the two backgrounds would swallow, are replaced.
+const colours = ["#0072b2", "#009e73", "#cc79a7", "#d55e00", "#e69f00", "#56b4e9", "#a6761d", "#888888"];
+const family = { field: "family", type: "nominal", title: "filter", scale: { domain: familyNames, range: colours } };
+
+const log = (field, title, extra = {}) =>
+  ({ field, type: "quantitative", title, scale: { type: "log", nice: false, padding: 12 },
+     axis: { format: ".0e", labelOverlap: true, tickCount: 5 }, ...extra });
+
+// As many panels side by side as there is room for, beside an axis whose labels take `labels`.
+const panels = (width, count, { least = 300, labels = 70 } = {}) => {
+  const columns = Math.max(1, Math.min(count, Math.floor((width - labels) / least)));
+  return { columns, width: Math.max(140, Math.floor((width - labels) / columns) - 36) };
+};
+const short = (energy) => energy.replace(/^collision\//, "");
+const groups = (rows) => [...groupBy(rows, (r) => r.panel).values()];
+const header = (size) => ({ title: null, labelFontSize: 11, labelFontWeight: "bold", labelLimit: size.width });
+
+const tooltip = [
+  ["kernel"], ["distribution"], ["x", "cost", ".4g"], ["median", "median", ".3g"], ["p99", "p99", ".3g"],
+  ["max", "worst", ".3g"], ["source"], ["replay", "replay the worst"],
+].map(([field, title, format]) =>
+  ({ field, title: title ?? field, type: format ? "quantitative" : "nominal", ...(format && { format }) }));
+
+// Cost against error, a panel for each energy and distribution.
+export function paretoChart(rows, width, { cost, error }) {
+  const values = groups(points(rows, cost, error)).flatMap(pareto);
+  const size = panels(width, groups(values).length);
+  const point = { x: log("x", costs[cost].title, { axis: { format: "~g", labelOverlap: true, tickCount: 5 } }), y: log("y", errors[error].title) };
+  return {
+    data: { values },
+    facet: { field: "panel", type: "nominal", header: header(size) },
+    columns: size.columns,
+    spec: {
+      width: size.width,
+      height: Math.max(200, Math.round(0.75 * size.width)),
+      layer: [
+        { transform: [{ filter: "datum.hull" }],
+          mark: { type: "line", strokeDash: [4, 3], opacity: 0.6, color: "#888" },
+          encoding: { ...point, order: { field: "x", type: "quantitative" } } },
+        { mark: { type: "rule", opacity: 0.35 },
+          encoding: { ...point, y2: { field: "y_high" }, color: family,
+                      opacity: { condition: { test: "datum.dominated", value: 0.15 }, value: 0.5 } } },
+        ...[true, false].map((psd) => ({
+          transform: [{ filter: `datum.psd === ${psd}` }],
+          mark: { type: "point", strokeWidth: 2, size: 60, filled: psd },
+          encoding: {
+            ...point, color: family, tooltip,
+            shape: { field: "scalar", type: "nominal", title: "numbers" },
+            opacity: { condition: { test: "datum.dominated", value: 0.3 }, value: 1 },
+          },
+        })),
+        // Neighbours are named above and below in turn; the dearest stands at the right edge.
+        { transform: [{ filter: "!datum.dominated" }],
+          mark: { type: "text", fontSize: 10, limit: 110,
+                  align: { expr: "datum.dearest ? 'right' : 'left'" }, dx: { expr: "datum.dearest ? -7 : 7" },
+                  dy: { expr: "datum.below ? 10 : -8" } },
+          encoding: { ...point, text: { field: "filter" } } },
+      ],
+    },
+    resolve: { scale: { x: "shared", y: "shared" } },
+  };
+}
+
+// How the distance to the nearest matrix is distributed over the configurations, in steps of a
+// quarter of a decade.
+export function distributionChart(rows, width) {
+  const values = rows.flatMap((r) => {
+    const histogram = r.row.accuracy.distance.histogram;
+    if (!histogram) return [];
+    const all = histogram.reduce((sum, [, count]) => sum + count, 0);
+    const steps = groupBy(histogram, ([value]) => value > 0 ? Math.floor(4 * Math.log10(value)) : -72);
+    return [...steps].map(([step, part]) => ({
+      panel: r.panel, kernel: r.kernel, filter: r.filter, family: r.family,
+      distance: 10 ** ((step + 0.5) / 4),
+      share: part.reduce((sum, [, count]) => sum + count, 0) / all,
+    }));
+  });
+  if (!values.length) return null;
+  const size = panels(width, groups(values).length);
+  return {
+    data: { values },
+    facet: { field: "panel", type: "nominal", header: header(size) },
+    columns: size.columns,
+    spec: {
+      width: size.width, height: 180,
+      mark: { type: "line", interpolate: "step", strokeWidth: 1.5, point: { size: 12 } },
+      encoding: {
+        x: log("distance", errors.distance.title),
+        y: { field: "share", type: "quantitative", title: "share of configurations", axis: { format: "%" } },
+        color: family,
+        detail: { field: "kernel" },
+        tooltip: [{ field: "kernel" }, { field: "distance", format: ".2g" }, { field: "share", format: ".3%" }],
+      },
+    },
+  };
+}
+
+// Whether the answer depends on how the vertices are numbered: from the median to the worst.
+export function relabellingChart(rows, width) {
+  const shown = (v) => Math.max(typeof v === "number" ? v : 1e3, 1e-17);  // "inf" stands at the edge
+  const values = rows.flatMap(({ row, operations, ...r }) => {
+    const found = errors.relabelling.of(row);
+    return found ? [{ ...r, name: `${r.filter}/${r.scalar}`, median: found.value, p99: found.high, max: found.max,
+                      from: shown(found.value), to: shown(found.max), replay: replay(r, row.accuracy.relabelling.max.index) }] : [];
+  });
+  if (!values.length) return null;
+  const size = panels(width, groups(values).length, { labels: 160 });
+  return {
+    data: { values },
+    facet: { field: "panel", type: "nominal", header: header(size) },
+    columns: size.columns,
+    spec: {
+      width: size.width,
+      layer: [
+        { mark: { type: "rule", strokeWidth: 2, opacity: 0.5 }, encoding: { x: log("from", errors.relabelling.title), x2: { field: "to" } } },
+        { mark: { type: "point", filled: true, size: 50 }, encoding: { x: log("from", errors.relabelling.title), tooltip } },
+        { mark: { type: "tick", thickness: 2 }, encoding: { x: log("to", errors.relabelling.title), tooltip } },
+      ],
+      encoding: { y: { field: "name", type: "nominal", title: null, sort: null }, color: family },
+    },
+  };
+}
+
+// A row of `definite speed`: its energy, and the rest of its name.
+function split({ kernel, output }) {
+  const parts = kernel.split("/"), at = parts.length - (parts.at(-1) === output ? 3 : 2);
+  return { panel: short(parts.slice(0, at).join("/")), name: parts.slice(at).join("/") };
+}
+
+export const ringsOf = (speed) => [...new Set(speed.rows.filter((r) => r.floor && r.threads === 1).map((r) => r.ring))];
+
+// Each kernel beside the least time that this machine's arithmetic and stores allow.
+export function floorChart(speed, width, { ring }) {
+  const values = speed.rows.filter((r) => r.floor && r.threads === 1 && r.ring === ring).map((r) => ({
+    kernel: r.kernel, output: r.output, ring: r.ring, ...split(r), ns: r.ns_per_hessian.median,
+    floor: r.floor.ns, times: r.ns_per_hessian.median / r.floor.ns, binds: r.floor.binds,
+  }));
+  if (!values.length) return null;
+  const each = groups(values);
+  const columns = Math.max(1, Math.floor(width / 600));
+  const domain = [Math.min(...values.map((v) => v.floor)) / 1.3, Math.max(...values.map((v) => v.ns)) * 1.3];
+  const scale = { type: "log", domain, nice: false }, axis = { format: "~g", tickCount: 5 };
+  const title = "ns per Hessian";
+  return {
+    data: { values },
+    columns,
+    concat: each.map((panel) => ({
+      transform: [{ filter: { field: "panel", equal: panel[0].panel } }],
+      title: { text: panel[0].panel, fontSize: 12 },
+      width: Math.max(120, Math.floor(width / columns) - 230),
+      encoding: { y: { field: "name", type: "nominal", title: null, axis: { labelLimit: 170 } } },
+      layer: [
+        { mark: { type: "rule", strokeWidth: 2, opacity: 0.5, color: "#888" },
+          encoding: { x: { field: "floor", type: "quantitative", scale, axis, title }, x2: { field: "ns" } } },
+        { mark: { type: "tick", thickness: 3 },
+          encoding: { x: { field: "floor", type: "quantitative", scale, axis, title },
+                      color: { field: "binds", title: "the floor is of", type: "nominal", scale: { domain: ["arithmetic", "division", "stores"], range: colours } } } },
+        { mark: { type: "point", filled: true, size: 45, color: "#888" },
+          encoding: { x: { field: "ns", type: "quantitative", scale, axis, title },
+                      tooltip: [{ field: "kernel" }, { field: "output" }, { field: "ns", format: ".3g" }, { field: "floor", format: ".3g" },
+                                { field: "times", title: "times the floor", format: ".2f" }, { field: "binds" }] } },
+      ],
+    })),
+  };
+}
+
+// Where the seconds of a whole job go. Each stage was timed with those before it: a difference may be
+// below 0 by what two timings differ.
+export function stagesChart(speed, width) {
+  const values = (speed?.jobs ?? []).flatMap(({ kernel, threads, seconds: s }) =>
+    Object.entries({ "draw the inputs": s.draw, frame: s.frame, Hessian: s.hessian - s.frame, "filter and write": s.packed - s.hessian })
+      .map(([stage, seconds], order) => ({ stage, seconds: Math.max(0, seconds), order, kernel, threads,
+                                           name: `${short(kernel)}, ${threads} thread${threads > 1 ? "s" : ""}` })));
+  if (!values.length) return null;
+  const labels = Math.min(260, 0.4 * width);
+  return {
+    data: { values },
+    width: Math.max(120, width - labels - 50),
+    mark: "bar",
+    encoding: {
+      y: { field: "name", type: "nominal", title: null, axis: { labelLimit: labels } },
+      x: { field: "seconds", type: "quantitative", title: "seconds for the job" },
+      color: { field: "stage", type: "nominal", sort: null, scale: { range: colours } },
+      order: { field: "order" },
+      tooltip: [{ field: "kernel" }, { field: "stage" }, { field: "seconds", format: ".3g" }],
+    },
+  };
+}

@@ -1,0 +1,118 @@
+import { parse, View } from "vega";
+import { compile } from "vega-lite";
+import { Handler } from "vega-tooltip";
+import { distributionChart, floorChart, paretoChart, relabellingChart, ringsOf, stagesChart } from "./charts.js";
+import { costs, errors, points, rowsOf } from "./data.js";
+import { csv, fromMarkdown, save } from "./tables.js";
+import { theme } from "./theme.js";
+
+const { results } = JSON.parse(document.getElementById("data").textContent);
+const rows = rowsOf(results);
+const main = document.querySelector("main");
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const redraws = [];
+
+function element(tag, properties = {}, ...children) {
+  const e = Object.assign(document.createElement(tag), properties);
+  e.append(...children);
+  return e;
+}
+
+function section(id, title, says) {
+  const s = element("section", { id }, element("h2", { textContent: title }), element("p", { className: "says", textContent: says }));
+  main.append(s);
+  document.querySelector("nav").append(element("a", { href: `#${id}`, textContent: title }));
+  return s;
+}
+
+function picker(name, options, chosen, change) {
+  const select = element("select", { name });
+  for (const [value, text, disabled] of options) select.append(element("option", { value, textContent: text, disabled, selected: value === chosen }));
+  select.addEventListener("change", () => change(select.value));
+  return element("label", {}, `${name} `, select);
+}
+
+// A chart made by `make(width)`, drawn again when the page's width or colours change; what it shows
+// is there as CSV.
+function chart(into, make, name) {
+  const tools = element("div", { className: "tools" });
+  const place = element("div", { className: "wide chart" });
+  into.append(tools, place);
+  let view, spec;
+  const draw = async () => {
+    spec = make(place.clientWidth || main.clientWidth);
+    if (!spec) return void place.replaceChildren(element("p", { textContent: "There is no data for this choice." }));
+    view?.finalize();
+    place.replaceChildren();
+    view = new View(parse(compile({ ...spec, config: theme(dark.matches, place.clientWidth) }).spec), {
+      renderer: "svg", container: place, hover: true,
+      tooltip: new Handler({ theme: dark.matches ? "dark" : "light" }).call,
+    });
+    await view.runAsync();
+  };
+  tools.append(element("button", { type: "button", textContent: "CSV", onclick: () => save(`${name}.csv`, csv(spec.data.values)) }));
+  redraws.push(draw);
+  draw();
+  return { tools, draw };
+}
+
+if (rows.length) {
+  const choice = { cost: rows.some((r) => costs.ns.of(r.row)) ? "ns" : "flops", error: "distance" };
+  const has = (cost, error) => points(rows, cost, error).length > 0;
+  if (has(choice.cost, choice.error)) {
+    const s = section("pareto", "Cost against error", "Each point is a filter. Lower is nearer to its aim, left is cheaper. A whisker goes from the median to the 99th percentile; a hollow point is not always PSD; a faint one is beaten in both by another; the dashed line is the convex hull of those that are not. An error of 0 stands at the lower edge.");
+    const { tools, draw } = chart(s, (width) => paretoChart(rows, width, choice), "pareto");
+    for (const [axis, all] of [["cost", costs], ["error", errors]]) {
+      const usable = Object.entries(all).map(([key, { title }]) => [key, title, axis === "cost" ? !has(key, "distance") : !has(choice.cost, key)]);
+      tools.prepend(picker(axis, usable, choice[axis], (value) => { choice[axis] = value; draw(); }));
+    }
+  }
+  if (distributionChart(rows, 900)) {
+    chart(section("distribution", "How far from the nearest PSD matrix", "The share of configurations at each distance, relative to the norm of the Hessian's nearest PSD matrix, in steps of a quarter of a decade."), (width) => distributionChart(rows, width), "distribution");
+  }
+  if (relabellingChart(rows, 900)) {
+    chart(section("relabelling", "Does the answer depend on vertex numbering", "How much the filtered matrix changes when the vertices are numbered otherwise: a dot at the median, a tick at the worst. At rounding it does not depend on the numbering."), (width) => relabellingChart(rows, width), "relabelling");
+  }
+}
+
+for (const { file, json } of results) {
+  if (!json.speed) continue;
+  const rings = ringsOf(json.speed);
+  if (rings.length) {
+    const choice = { ring: rings[0] };
+    const s = section("floors", "How near to the machine's limit", `A tick is the least time that arithmetic, divisions and stores of ${json.machine.cpu} allow; a dot is what the kernel takes, its outputs going to the ring chosen (${file}).`);
+    const { tools, draw } = chart(s, (width) => floorChart(json.speed, width, choice), "floors");
+    tools.prepend(picker("ring", rings.map((ring) => [ring, ring]), choice.ring, (value) => { choice.ring = value; draw(); }));
+  }
+  if (stagesChart(json.speed, 900)) {
+    chart(section("stages", "Where the time of a job goes", "Drawing the inputs included."), (width) => stagesChart(json.speed, width), "stages");
+  }
+}
+
+results.forEach(({ file, markdown }, i) => {
+  if (!markdown) return;
+  const s = section(`tables-${i + 1}`, `Tables: ${file}`, "A click on a heading sorts.");
+  const long = markdown.split("\n").length > 200;  // a reader looks for one of its lines
+  s.append(element("details", { open: !long }, element("summary", { textContent: "Show" }), fromMarkdown(markdown, `tables-${i + 1}`)));
+});
+
+const footer = document.querySelector("footer");
+footer.append(element("h2", { textContent: "Where this comes from" }));
+for (const { file, json } of results) {
+  const facts = element("dl");
+  const fact = (name, value) => value !== undefined && value !== null && facts.append(element("dt", { textContent: name }), element("dd", { textContent: value }));
+  fact("command", json.command?.join(" "));
+  fact("machine", json.machine && `${json.machine.cpu}, ${json.machine.cores} cores, ${json.machine.os}${json.machine.noisy ? "; noisy while it was measured" : ""}`);
+  fact("build", `${json.build.compiler} ${json.build.flags}, ${json.build.isa}, Eigen ${json.build.eigen}, ${json.build.libm}, commit ${json.build.commit}`);
+  fact("seed", json.seed);
+  fact("protocol", json.protocol);
+  footer.append(element("h3", { textContent: file }), facts);
+}
+
+let width = main.clientWidth;
+addEventListener("resize", () => {
+  if (main.clientWidth === width) return;
+  width = main.clientWidth;
+  for (const draw of redraws) draw();
+});
+dark.addEventListener("change", () => redraws.forEach((draw) => draw()));

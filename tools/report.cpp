@@ -1,0 +1,140 @@
+// definite report: results as one page, which works from disk.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "benchmarks/plans/plan.hpp"
+#include "benchmarks/speed/speed.hpp"
+#include "tools/command_line.hpp"
+#include "tools/output_file.hpp"
+#include "tools/page_template.hpp"
+
+namespace definite {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kDataMark = "/*data*/";
+constexpr const char* kFigures[] = {"distance", "excess", "rounding", "psd_defect", "relabelling"};
+
+struct ReportOptions {
+  std::vector<std::string> files;
+  std::string out;
+};
+
+Json Only(const Json& object, std::initializer_list<const char*> keys) {
+  Json part;
+  for (const char* key : keys) part[key] = object.at(key);
+  return part;
+}
+
+// What the charts show of a row: not the coordinates of its worst cases.
+Json ShownOf(const Json& row) {
+  Json shown = Only(row, {"kernel", "energy", "filter", "scalar", "source", "distribution", "count",
+                          "active", "verdicts"});
+  shown["timing"] = Json::array();
+  for (const Json& timing : row.at("timing")) {
+    shown["timing"].push_back(Only(timing, {"pairs", "threads", "ns_per_hessian", "ratio_to"}));
+  }
+  for (const char* name : kFigures) {
+    const Json& figure = row.at("accuracy").at(name);
+    Json& to = shown["accuracy"][name];
+    if (figure.is_null()) continue;
+    to = Only(figure, {"count", "median", "p99"});
+    to["max"] = Only(figure.at("max"), {"value", "index"});
+  }
+  Json& distance = shown["accuracy"]["distance"];
+  if (!distance.is_null()) {
+    distance["histogram"] = row.at("accuracy").at("distance").at("histogram");
+  }
+  return shown;
+}
+
+// The tables that the command which made the result prints; null if there are none.
+Json TablesOf(const Json& result, const std::string& path) {
+  try {
+    if (result.contains("speed")) return ToMarkdown(result);
+    for (const Plan& plan : AllPlans()) {
+      if (result.value("paper", Json()) == plan.name) return plan.markdown(result);
+    }
+  } catch (const std::exception& error) {
+    // Of some of the rows only: there is enough for charts.
+    fmt::print(stderr, "definite: FILE '{}': without its tables: {}\n", path, error.what());
+  }
+  return nullptr;
+}
+
+Json PageDataOf(const std::string& path) {
+  const Json result = ReadResult("FILE", path);
+  try {
+    Json shown = Only(result, {"seed", "protocol", "build", "partial"});
+    for (const char* key : {"command", "machine", "speed"}) {
+      if (result.contains(key)) shown[key] = result.at(key);
+    }
+    shown["rows"] = Json::array();
+    for (const Json& row : result.at("rows")) shown["rows"].push_back(ShownOf(row));
+    const Json tables = TablesOf(result, path);
+    if (shown["rows"].empty() && !shown.contains("speed") && tables.is_null()) {
+      throw UsageError(
+          fmt::format("FILE '{}': it has nothing to draw; expected a result of sweep, speed or "
+                      "reproduce",
+                      path));
+    }
+    return {{"file", std::filesystem::path(path).filename().string()},
+            {"markdown", tables},
+            {"json", shown}};
+  } catch (const Json::exception& error) {
+    throw UsageError(
+        fmt::format("FILE '{}': not as results/schema.json has it: {}", path, error.what()));
+  }
+}
+
+// The template with the data in it. A script ends at "</script", wherever that stands.
+std::string Page(const Json& data) {
+  const std::string_view page = PageTemplate();
+  const std::size_t mark = page.find(kDataMark);
+  std::string text(page.substr(0, mark));
+  for (const char c : data.dump()) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text += page.substr(mark + kDataMark.size());
+}
+
+int RunReportCommand(const ReportOptions& options) {
+  if (PageTemplate().empty()) {
+    throw UsageError("report: this program was built without the page, for want of npm");
+  }
+  OutputFile out("--out", options.out);
+  Json results = Json::array();
+  for (const std::string& path : options.files) results.push_back(PageDataOf(path));
+  out.Commit(Page({{"results", results}}));
+  return kOk;
+}
+
+}  // namespace
+
+void AddReport(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<ReportOptions>();
+  CLI::App* command =
+      app.add_subcommand("report", "Draws results: cost against error, as one page for a browser");
+  command->add_option("FILE", options->files, "Results of sweep, speed or reproduce")->required();
+  command->add_option("--out", options->out, "The page, one file that needs no network")
+      ->type_name("FILE")
+      ->required();
+  command->footer(
+      "Examples:\n"
+      "  definite reproduce shi-kim-2023 --quick --json result.json\n"
+      "  definite report result.json --out report.html\n"
+      "  definite report results/published/shi-kim-2023.json speed.json --out report.html");
+  command->callback([options, &exit_code] { exit_code = RunReportCommand(*options); });
+}
+
+}  // namespace definite
