@@ -140,7 +140,7 @@ export function floorChart(speed, width, { ring }) {
     floor: r.floor.ns, times: r.ns_per_hessian.median / r.floor.ns, binds: r.floor.binds,
   }));
   if (!values.length) return null;
-  const each = groups(values);
+  const each = groups(values).sort((a, b) => b.length - a.length);  // panels of a row are of one size
   const columns = Math.max(1, Math.floor(width / 600));
   const domain = [Math.min(...values.map((v) => v.floor)) / 1.3, Math.max(...values.map((v) => v.ns)) * 1.3];
   const scale = { type: "log", domain, nice: false }, axis = { format: "~g", tickCount: 5 };
@@ -174,7 +174,7 @@ export function stagesChart(speed, width) {
   const values = (speed?.jobs ?? []).flatMap(({ kernel, threads, seconds: s }) =>
     Object.entries({ "draw the inputs": s.draw, frame: s.frame, Hessian: s.hessian - s.frame, "filter and write": s.packed - s.hessian })
       .map(([stage, seconds], order) => ({ stage, seconds: Math.max(0, seconds), order, kernel, threads,
-                                           name: `${short(kernel)}, ${threads} thread${threads > 1 ? "s" : ""}` })));
+                                           name: `${short(kernel).replace("/analytic/f64x8", "")}, ${threads} thread${threads > 1 ? "s" : ""}` })));
   if (!values.length) return null;
   const labels = Math.min(260, 0.4 * width);
   return {
