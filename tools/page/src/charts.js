@@ -17,7 +17,13 @@ const panels = (width, count, { least = 300, labels = 70 } = {}) => {
 };
 const short = (energy) => energy.replace(/^collision\//, "");
 const groups = (rows) => [...groupBy(rows, (r) => r.panel).values()];
-const header = (size) => ({ title: null, labelFontSize: 11, labelFontWeight: "bold", labelLimit: size.width });
+// A panel for each value of that field.
+const panelled = (values, { columns, width }) => ({
+  data: { values },
+  facet: { field: "panel", type: "nominal",
+           header: { title: null, labelFontSize: 11, labelFontWeight: "bold", labelLimit: width } },
+  columns,
+});
 
 const tooltip = [
   ["kernel"], ["distribution"], ["x", "cost", ".4g"], ["median", "median", ".3g"], ["p99", "p99", ".3g"],
@@ -31,9 +37,7 @@ export function paretoChart(rows, width, { cost, error }) {
   const size = panels(width, groups(values).length);
   const point = { x: log("x", costs[cost].title, { axis: { format: "~g", labelOverlap: true, tickCount: 5 } }), y: log("y", errors[error].title) };
   return {
-    data: { values },
-    facet: { field: "panel", type: "nominal", header: header(size) },
-    columns: size.columns,
+    ...panelled(values, size),
     spec: {
       width: size.width,
       height: Math.max(200, Math.round(0.75 * size.width)),
@@ -82,9 +86,7 @@ export function distributionChart(rows, width) {
   if (!values.length) return null;
   const size = panels(width, groups(values).length);
   return {
-    data: { values },
-    facet: { field: "panel", type: "nominal", header: header(size) },
-    columns: size.columns,
+    ...panelled(values, size),
     spec: {
       width: size.width, height: 180,
       mark: { type: "line", interpolate: "step", strokeWidth: 1.5, point: { size: 12 } },
@@ -110,9 +112,7 @@ export function relabellingChart(rows, width) {
   if (!values.length) return null;
   const size = panels(width, groups(values).length, { labels: 160 });
   return {
-    data: { values },
-    facet: { field: "panel", type: "nominal", header: header(size) },
-    columns: size.columns,
+    ...panelled(values, size),
     spec: {
       width: size.width,
       layer: [
