@@ -49,6 +49,8 @@ TEST(ManyComparisons, AreAdjustedAsBenjaminiAndHochbergHaveIt) {
   EXPECT_DOUBLE_EQ(adjusted[1], 0.04);
   EXPECT_DOUBLE_EQ(adjusted[2], 0.04);
   EXPECT_DOUBLE_EQ(adjusted[3], 0.02);
+  // 0.02 alone: never more than what a greater one becomes.
+  EXPECT_DOUBLE_EQ(AdjustForMany({0.01, 0.011})[0], 0.011);
   EXPECT_TRUE(AdjustForMany({}).empty());
 }
 
