@@ -20,7 +20,7 @@ before(async () => {
   folder = mkdtempSync(join(tmpdir(), "page-"));
   const run = (...words) => execFileSync(program, words, { stdio: ["ignore", "ignore", "pipe"] });
   const [sweep, speed] = ["sweep.json", "speed.json"].map((name) => join(folder, name));
-  run("sweep", "--count", "2000", "--json", sweep, ...["none/f64", "analytic/f64x8", "split/f64x8", "nearest/f64x8", "gauss_newton/f64", "numeric/f64"]
+  run("sweep", "--count", "2000", "--set", "k=2", "--json", sweep, ...["none/f64", "analytic/f64x8", "split/f64x8", "nearest/f64x8", "gauss_newton/f64", "numeric/f64"]
     .flatMap((name) => ["--kernels", `${signed}/${name}`]));
   run("speed", "--rounds", "3", "--job", "1e4", "--elements", "0", "--json", speed, "--kernels", `${signed}/analytic/f64x8`,
       "--kernels", `${signed}/gauss_newton/f64x8`);
@@ -108,8 +108,20 @@ test("tables sort, and their data can be taken away", async () => {
   const lines = readFileSync(await download.path(), "utf8").trim().split("\n");
   assert.match(lines[0], /kernel.*x.*y/);
   assert.ok(lines.length > 6);
+  // The command that draws a worst case again has the parameters that the sweep set.
+  for (const line of lines.slice(1)) assert.equal(line.includes("--set k=2"), line.includes("--distribution active"), line);
+  assert.ok(lines.some((line) => line.includes("--set k=2")));
   assert.deepEqual(said, []);
   await page.close();
+});
+
+test("an infinite error stands above all others, 0 below", async () => {
+  const { points } = await import(join(npm, "src/data.js"));
+  const row = (median, p99) => ({ row: {
+    timing: [{ pairs: "all", ns_per_hessian: { median: 1, low: 1, high: 1 }, ratio_to: {} }],
+    accuracy: { distance: { count: 1, median, p99, max: { value: p99, index: 0 } } } } });
+  const [none, some, infinite] = points([row(0, 0), row(1, 2), row(1, "inf")], "ns", "distance");
+  assert.ok(none.y < some.y && some.y_high < infinite.y_high);
 });
 
 test("what is no result is refused, and nothing is written", () => {

@@ -36,6 +36,7 @@ Json Only(const Json& object, std::initializer_list<const char*> keys) {
 Json ShownOf(const Json& row) {
   Json shown = Only(row, {"kernel", "energy", "filter", "scalar", "source", "distribution", "count",
                           "active", "verdicts"});
+  if (row.contains("set")) shown["set"] = row.at("set");
   shown["timing"] = Json::array();
   for (const Json& timing : row.at("timing")) {
     shown["timing"].push_back(Only(timing, {"pairs", "threads", "ns_per_hessian", "ratio_to"}));

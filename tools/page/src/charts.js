@@ -34,6 +34,7 @@ const tooltip = [
 // Cost against error, a panel for each energy and distribution.
 export function paretoChart(rows, width, { cost, error }) {
   const values = groups(points(rows, cost, error)).flatMap(pareto);
+  if (!values.length) return null;
   const size = panels(width, groups(values).length);
   const point = { x: log("x", costs[cost].title, { axis: { format: "~g", labelOverlap: true, tickCount: 5 } }), y: log("y", errors[error].title) };
   return {

@@ -73,13 +73,14 @@ export function rowsOf(results) {
       psd: row.verdicts.non_psd + row.verdicts.non_finite === 0,
       source: row.source,
       seed: json.seed,
+      set: Object.entries(row.set ?? {}).map(([name, value]) => ` --set ${name}=${value}`).join(""),
     })));
 }
 
 export const replay = (r, index) =>
-  `definite replay --kernel ${r.kernel} --distribution ${r.distribution} --seed ${r.seed} --index ${index}`;
+  `definite replay --kernel ${r.kernel} --distribution ${r.distribution} --seed ${r.seed} --index ${index}${r.set}`;
 
-// Two axes of the rows that have both. On a logarithmic axis 0 stands at `least`.
+// Two axes of the rows that have both. On a logarithmic axis 0 stands at `least`, "inf" at `most`.
 export function points(rows, cost, error) {
   const found = rows.flatMap((r) => {
     const x = costs[cost].of(r.row, r.operations), y = errors[error].of(r.row);
@@ -87,7 +88,8 @@ export function points(rows, cost, error) {
   });
   const positive = found.flatMap(({ y }) => [y.value, y.high].filter((v) => v > 0));
   const least = positive.length ? Math.min(...positive) / 3 : 1e-17;
-  const shown = (v) => (typeof v === "number" && v > 0 ? v : least);
+  const most = positive.length ? 3 * Math.max(...positive) : 1;
+  const shown = (v) => (typeof v !== "number" ? most : v > 0 ? v : least);
   return found.map(({ x, y, row, operations, ...r }) => ({
     ...r,
     x: x.value, x_low: x.low, x_high: x.high,

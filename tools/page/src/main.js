@@ -41,16 +41,17 @@ function chart(into, make, name) {
   let view, spec;
   const draw = async () => {
     spec = make(place.clientWidth || main.clientWidth);
-    if (!spec) return void place.replaceChildren(element("p", { textContent: "There is no data for this choice." }));
     view?.finalize();
+    view = null;
     place.replaceChildren();
+    if (!spec) return void place.append(element("p", { textContent: "There is no data for this choice." }));
     view = new View(parse(compile({ ...spec, config: theme(dark.matches, place.clientWidth) }).spec), {
       renderer: "svg", container: place, hover: true,
       tooltip: new Handler({ theme: dark.matches ? "dark" : "light" }).call,
     });
     await view.runAsync();
   };
-  tools.append(element("button", { type: "button", textContent: "CSV", onclick: () => save(`${name}.csv`, csv(spec.data.values)) }));
+  tools.append(element("button", { type: "button", textContent: "CSV", onclick: () => save(`${name}.csv`, csv(spec?.data.values ?? [])) }));
   redraws.push(draw);
   draw();
   return { tools, draw };
@@ -60,7 +61,7 @@ if (rows.length) {
   const choice = { cost: rows.some((r) => costs.ns.of(r.row)) ? "ns" : "flops", error: "distance" };
   const has = (cost, error) => points(rows, cost, error).length > 0;
   if (has(choice.cost, choice.error)) {
-    const s = section("pareto", "Cost against error", "Each point is a filter. Lower is nearer to its aim, left is cheaper. A whisker goes from the median to the 99th percentile; a hollow point is not always PSD; a faint one is beaten in both by another; the dashed line is the convex hull of those that are not. An error of 0 stands at the lower edge.");
+    const s = section("pareto", "Cost against error", "Each point is a filter. Lower is nearer to its aim, left is cheaper. A whisker goes from the median to the 99th percentile; a hollow point is not always PSD; a faint one is beaten in both by another; the dashed line is the convex hull of those that are not. An error of 0 stands at the lower edge, an infinite one at the upper.");
     const { tools, draw } = chart(s, (width) => paretoChart(rows, width, choice), "pareto");
     for (const [axis, all] of [["cost", costs], ["error", errors]]) {
       const usable = Object.entries(all).map(([key, { title }]) => [key, title, axis === "cost" ? !has(key, "distance") : !has(choice.cost, key)]);
