@@ -85,7 +85,7 @@ TEST(Figures, MeasureATileLikeItsMatricesOneByOne) {
     // PSD, zero, not finite, and of a norm that overflows.
     std::vector<double>& f = scalar[0];
     const auto matrix = [&](std::size_t i) { return f.begin() + static_cast<long>(i * size); };
-    for (std::size_t i : {0, 1, 2, 4}) std::fill_n(matrix(i), size, 0.0);
+    for (std::size_t i : {0u, 1u, 2u, 4u}) std::fill_n(matrix(i), size, 0.0);
     for (std::size_t k = 0, i = 0; i < static_cast<std::size_t>(n); ++i) {
       matrix(0)[static_cast<long>(k)] = 1;
       k += static_cast<std::size_t>(n) - i;
@@ -324,7 +324,7 @@ TEST(CheckedPass, LooksAtNumericRowsWhereDefinitionsAre) {
   EXPECT_EQ(looked_at(all, 0), 1003u);
   EXPECT_EQ(looked_at(some, 0), 101u);
   EXPECT_EQ(some.energies[0].rows[0].statistics.defined, 101u);
-  for (std::size_t r : {1, 2}) {
+  for (std::size_t r : {1u, 2u}) {
     EXPECT_EQ(looked_at(some, r), 1003u);
     EXPECT_EQ(some.energies[0].rows[r].statistics.checksum,
               all.energies[0].rows[r].statistics.checksum);

@@ -76,6 +76,8 @@ test("pickers choose the axes", async () => {
   await page.selectOption("#pareto select[name=cost]", "flops");
   await page.waitForFunction(() => document.querySelector("#pareto .chart svg")?.textContent.includes("floating-point operations"));
   assert.ok(await marks(page, "pareto") > 0);
+  // What has no points beside the other choice cannot be chosen.
+  assert.ok(await page.locator("#pareto select[name=error] option:enabled").count() > 1);
   await page.selectOption("#floors select[name=ring]", "memory");
   assert.ok(await marks(page, "floors") > 1);
   assert.deepEqual(said, []);
@@ -112,6 +114,44 @@ test("tables sort, and their data can be taken away", async () => {
   for (const line of lines.slice(1)) assert.equal(/--index \d+ --set k=2/.test(line), line.includes("--distribution active"), line);
   assert.ok(lines.some((line) => line.includes("--distribution active")));
   assert.deepEqual(said, []);
+  await page.close();
+});
+
+test("runs of one machine make a history, those of two are refused", async () => {
+  const [first, second, other, out] = ["sweep.json", "second.json", "other.json", "history.html"].map((name) => join(folder, name));
+  const result = JSON.parse(readFileSync(first, "utf8"));
+  for (const row of result.rows) for (const t of row.timing) t.ns_per_hessian.median *= 2;
+  writeFileSync(second, JSON.stringify(result));
+  writeFileSync(other, JSON.stringify({ ...result, machine: { ...result.machine, cpu: "another" } }));
+  const report = (...files) => spawnSync(program, ["report", "--history", ...files, "--out", out], { encoding: "utf8" });
+  for (const [files, says] of [[[first, other], /other\.json' is of another machine: its cpu is "another"/], [[first], /two FILEs or more/]]) {
+    const done = report(...files);
+    assert.equal(done.status, 2);
+    assert.match(done.stderr, says);
+    assert.ok(!existsSync(out));
+  }
+  assert.equal(report(first, second).status, 0);
+  const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+  const said = [];
+  page.on("pageerror", (error) => said.push(error.message));
+  await page.goto(`file://${out}`);
+  await page.waitForSelector("#history .chart svg");
+  // A line with an interval and a point for each of two runs, for each of the six kernels.
+  assert.equal(await page.locator("#history .mark-line.role-mark path").count(), 6);
+  assert.equal(await page.locator("#history .mark-symbol.role-mark path").count(), 12);
+  if (process.env.SCREENSHOTS) await page.screenshot({ path: join(process.env.SCREENSHOTS, "history.png"), fullPage: true });
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
+test("two files of speed have sections of their own", async () => {
+  const out = join(folder, "two.html"), speed = join(folder, "speed.json");
+  assert.equal(spawnSync(program, ["report", speed, speed, "--out", out]).status, 0);
+  const page = await browser.newPage();
+  await page.goto(`file://${out}`);
+  await page.waitForSelector("#floors-2 .chart svg");
+  const ids = await page.locator("section").evaluateAll((all) => all.map((e) => e.id));
+  assert.equal(new Set(ids).size, ids.length, ids.join(" "));
   await page.close();
 });
 

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "benchmarks/harness/merge.hpp"
+#include "benchmarks/harness/sampling/recorded.hpp"
 
 namespace definite {
 
@@ -150,7 +151,9 @@ const Distribution& DistributionNamed(const std::string& name) {
   for (const Distribution& d : AllDistributions()) {
     known += fmt::format("\n  {:<8} {}", d.name, d.description);
   }
-  throw UsageError(fmt::format("--distribution '{}': expected one of{}", name, known));
+  throw UsageError(fmt::format(
+      "--distribution '{}': expected one of{}\nor a .csv or .jsonl file of configurations", name,
+      known));
 }
 
 CLI::Option* AddKernelsOption(CLI::App& command, std::vector<std::string>& globs) {
@@ -167,7 +170,9 @@ void AddDistributionOption(CLI::App& command, std::string& name) {
   for (const Distribution& d : AllDistributions()) {
     known += fmt::format("{}{}", known.empty() ? "" : ", ", d.name);
   }
-  command.add_option("--distribution", name, fmt::format("{} (default: {})", known, name))
+  command
+      .add_option("--distribution", name,
+                  fmt::format("{}, or a .csv or .jsonl file (default: {})", known, name))
       ->type_name("NAME");
 }
 
@@ -211,7 +216,12 @@ std::uint64_t RunOptions::Count() const {
 
 std::uint64_t RunOptions::Seed() const { return ParseCount("--seed", seed, 0); }
 
-int RunOptions::Threads() const {
+std::uint64_t RunOptions::CountOf(const Distribution& distribution) const {
+  if (distribution.recorded && !count && !quick) return distribution.recorded->Size();
+  return Count();
+}
+
+int ThreadsOf(const std::optional<std::string>& threads) {
   return static_cast<int>(threads ? ParseCount("--threads", *threads, 1, 1024)
                                   : std::max(1u, std::thread::hardware_concurrency()));
 }
@@ -228,7 +238,11 @@ void AddRunOptions(CLI::App& command, RunOptions& options) {
                 fmt::format("The same as --count {}", options.quick_count))
       ->excludes(count);
   AddSeedOption(command, options.seed);
-  command.add_option("--threads", options.threads, "Threads (default: all cores)")->type_name("N");
+  AddThreadsOption(command, options.threads);
+}
+
+void AddThreadsOption(CLI::App& command, std::optional<std::string>& threads) {
+  command.add_option("--threads", threads, "Threads (default: all cores)")->type_name("N");
 }
 
 void AddJsonOption(CLI::App& command, std::optional<std::string>& path) {

@@ -49,6 +49,9 @@ nlohmann::ordered_json ReadResult(const std::string& option, const std::string& 
 // A sweep's, with its histograms. Throws UsageError likewise.
 SweepResult ReadSweep(const std::string& option, const std::string& path);
 
+// All cores if not given. Throws UsageError.
+int ThreadsOf(const std::optional<std::string>& threads);
+
 // What a run over many configurations is told.
 struct RunOptions {
   std::string default_count = "1e7", quick_count = "1e5", seed = "42";
@@ -58,8 +61,10 @@ struct RunOptions {
 
   // Throw UsageError.
   std::uint64_t Count() const;  // quick_count if quick
+  // The same, but all of a distribution that is on record unless told otherwise.
+  std::uint64_t CountOf(const Distribution& distribution) const;
   std::uint64_t Seed() const;
-  int Threads() const;  // all cores if not given
+  int Threads() const { return ThreadsOf(threads); }
 };
 
 // Options that several subcommands have.
@@ -67,6 +72,7 @@ void AddRunOptions(CLI::App& command, RunOptions& options);
 void AddJsonOption(CLI::App& command, std::optional<std::string>& path);
 CLI::Option* AddKernelsOption(CLI::App& command, std::vector<std::string>& globs);
 void AddDistributionOption(CLI::App& command, std::string& name);
+void AddThreadsOption(CLI::App& command, std::optional<std::string>& threads);
 void AddSeedOption(CLI::App& command, std::string& seed);
 void AddSetOption(CLI::App& command, std::vector<std::string>& overrides);
 
@@ -82,6 +88,7 @@ void AddCompare(CLI::App& app, int& exit_code);
 void AddDoctor(CLI::App& app, int& exit_code);
 void AddExport(CLI::App& app, int& exit_code);
 void AddReport(CLI::App& app, int& exit_code);
+void AddAdvise(CLI::App& app, int& exit_code);
 
 // The words of the command line, as given.
 const std::vector<std::string>& CommandWords();

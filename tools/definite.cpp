@@ -64,7 +64,8 @@ int Run(int argc, char** argv) {
       "  definite sweep --quick\n"
       "  definite sweep --kernels 'collision/*/analytic/*' --count 1e6 --json result.json\n"
       "  definite verify --quick\n"
-      "\nExit codes: 0 all is well, 1 a promise is broken or something worse, 2 bad input, 130 interrupted.");
+      "\nExit codes: 0 all is well, 1 a promise is broken or something worse, 2 bad input, 130 "
+      "interrupted.");
   int exit_code = kOk;
   AddSweep(app, exit_code);
   AddSpeed(app, exit_code);
@@ -77,6 +78,7 @@ int Run(int argc, char** argv) {
   AddDoctor(app, exit_code);
   AddExport(app, exit_code);
   AddReport(app, exit_code);
+  AddAdvise(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version

@@ -24,6 +24,7 @@ constexpr const char* kFigures[] = {"distance", "excess", "rounding", "psd_defec
 struct ReportOptions {
   std::vector<std::string> files;
   std::string out;
+  bool history = false;
 };
 
 Json Only(const Json& object, std::initializer_list<const char*> keys) {
@@ -94,6 +95,27 @@ Json PageDataOf(const std::string& path) {
   }
 }
 
+// Times over several runs mean something on one machine only.
+void CheckHistory(const std::vector<std::string>& files, const Json& results) {
+  if (files.size() < 2) throw UsageError("--history: expected two FILEs or more, in their order");
+  const auto shown_of = [&](std::size_t i) -> const Json& { return results.at(i).at("json"); };
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!shown_of(i).contains("machine")) {
+      throw UsageError(fmt::format("--history: FILE '{}' has no times", files[i]));
+    }
+    for (const char* key : {"cpu", "cores"}) {
+      const Json &first = shown_of(0).at("machine").at(key),
+                 &here = shown_of(i).at("machine").at(key);
+      if (first != here) {
+        throw UsageError(fmt::format(
+            "--history: FILE '{}' is of another machine: its {} is {}, of '{}' it is {}; expected "
+            "runs of one",
+            files[i], key, here.dump(), files[0], first.dump()));
+      }
+    }
+  }
+}
+
 // The template with the data in it. A script ends at "</script", wherever that stands.
 std::string Page(const Json& data) {
   const std::string_view page = PageTemplate();
@@ -116,7 +138,8 @@ int RunReportCommand(const ReportOptions& options) {
   OutputFile out("--out", options.out);
   Json results = Json::array();
   for (const std::string& path : options.files) results.push_back(PageDataOf(path));
-  out.Commit(Page({{"results", results}}));
+  if (options.history) CheckHistory(options.files, results);
+  out.Commit(Page({{"results", results}, {"history", options.history}}));
   return kOk;
 }
 
@@ -130,11 +153,15 @@ void AddReport(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "The page, one file that needs no network")
       ->type_name("FILE")
       ->required();
+  command->add_flag("--history", options->history,
+                    "FILEs are runs of one machine, in their order: a chart has their times,\n"
+                    "the other charts are of the last");
   command->footer(
       "Examples:\n"
       "  definite reproduce shi-kim-2023 --quick --json result.json\n"
       "  definite report result.json --out report.html\n"
-      "  definite report results/published/shi-kim-2023.json speed.json --out report.html");
+      "  definite report results/published/shi-kim-2023.json speed.json --out report.html\n"
+      "  definite report --history monday.json tuesday.json --out report.html");
   command->callback([options, &exit_code] { exit_code = RunReportCommand(*options); });
 }
 

@@ -124,14 +124,14 @@ void AddSpeed(CLI::App& app, int& exit_code) {
       ->add_option("--rounds", options->rounds, "Rounds, each in an order of its own (default: 15)")
       ->type_name("N");
   command
-      ->add_option(
-          "--job", options->job,
-          "Also where the time goes when N configurations are drawn and filtered, for rows\n"
-          "with stages of their own (default: 1e7; 0: not)")
+      ->add_option("--job", options->job,
+                   "Also where the time goes when N configurations are drawn and filtered, for\n"
+                   "rows with stages of their own (default: 1e7; 0: not)")
       ->type_name("N");
   command
       ->add_option("--elements", options->elements,
-                   "Also N elements scatter-added to a block-sparse matrix (default: 1e5; 0: not)")
+                   "Also N elements scatter-added to a block-sparse matrix\n"
+                   "(default: 1e5; 0: not)")
       ->type_name("N");
   AddJsonOption(*command, options->json);
   command

@@ -34,7 +34,7 @@ SweepPlan PlanOf(const SweepOptions& options) {
   SweepPlan plan;
   plan.rows = RowsMatching(options.kernels);
   plan.distribution = &DistributionNamed(options.distribution);
-  plan.count = options.run.Count();
+  plan.count = options.run.CountOf(*plan.distribution);
   plan.seed = options.run.Seed();
   plan.threads = options.run.Threads();
   plan.timing = !options.no_timing;
@@ -163,6 +163,7 @@ void AddSweep(CLI::App& app, int& exit_code) {
       "  definite sweep --kernels '*/analytic/*' --kernels '*/numeric/f64' --distribution paper\n"
       "  definite sweep --kernels '*/unsigned/*' --set side=-1\n"
       "  definite sweep --count 1e6 --threads 1 --json - | jq '.rows[].kernel'\n"
+      "  definite sweep --distribution contacts.csv   # all of a file: docs/advice.md\n"
       "  definite sweep --count 1e8 --no-timing --shard 2/7 --resume --json part-2.json\n"
       "  definite merge part-*.json --json whole.json");
   command->callback([options, &exit_code] { exit_code = RunSweepCommand(*options); });

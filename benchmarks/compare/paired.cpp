@@ -9,19 +9,14 @@
 #include <map>
 #include <sstream>
 
+#include "benchmarks/harness/report.hpp"
+
 namespace definite {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 using Medians = std::map<std::string, double>;
-
-// As a word for the shell.
-std::string Quoted(const std::string& word) {
-  std::string text;
-  for (char c : word) c == '\'' ? text += "'\\''" : text += c;
-  return fmt::format("'{}'", text);
-}
 
 std::string OutputOf(const std::string& command) {
   std::FILE* const pipe = popen(command.c_str(), "r");
@@ -44,8 +39,8 @@ std::string OutputOf(const std::string& command) {
 }
 
 Medians Run(const std::string& program, const PairedPlan& plan) {
-  std::string command = Quoted(program) + " sweep --no-checks --threads 1 --json -";
-  for (const std::string& word : plan.arguments) command += fmt::format(" {}", Quoted(word));
+  std::string command = ForShell(program) + " sweep --no-checks --threads 1 --json -";
+  for (const std::string& word : plan.arguments) command += fmt::format(" {}", ForShell(word));
   const Json result = Json::parse(OutputOf(command), nullptr, false);
   if (Interrupted()) return {};
   if (result.is_discarded()) throw CompareError("this wrote no JSON:\n  " + command);

@@ -89,16 +89,23 @@ EnergyStatistics EnergyStatisticsOf(const Json& row) {
   return e;
 }
 
+const Distribution* DistributionOf(const Json& plan) {
+  const auto name = plan.at("distribution").get<std::string>();
+  const Distribution* distribution = FindDistribution(name);
+  if (!distribution) throw MergeError(name + ": this program has no such distribution");
+  if (RecordedToJson(*distribution) != plan.value("recorded", Json())) {
+    throw MergeError(name + ": the file is not the one that was read then");
+  }
+  return distribution;
+}
+
 SweepPlan PlanOf(const Json& json) {
   SweepPlan plan;
   for (const Json& name : json.at("kernels")) {
     plan.rows.push_back(FindKernel(name.get<std::string>()));
     if (!plan.rows.back()) throw MergeError(name.dump() + ": this program has no such row");
   }
-  plan.distribution = FindDistribution(json.at("distribution").get<std::string>());
-  if (!plan.distribution) {
-    throw MergeError(json.at("distribution").dump() + ": this program has no such distribution");
-  }
+  plan.distribution = DistributionOf(json);
   for (const auto& [name, value] : json.at("set").items()) {
     const Parameter* known = nullptr;
     for (const KernelRow* row : plan.rows) {

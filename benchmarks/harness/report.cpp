@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstring>
 
 #include "benchmarks/harness/machine.hpp"
 #include "benchmarks/harness/promises.hpp"
 #include "benchmarks/harness/sampling/batch.hpp"
+#include "benchmarks/harness/sampling/recorded.hpp"
 #include "benchmarks/harness/timed_pass.hpp"
 
 namespace definite {
@@ -231,6 +234,7 @@ Json ToJson(const SweepPlan& plan) {
                 {{"definition", plan.samples.definition},
                  {"spectrum", plan.samples.spectrum},
                  {"truth", plan.samples.truth}}}};
+  if (plan.distribution->recorded) json["recorded"] = RecordedToJson(*plan.distribution);
   for (const KernelRow* row : plan.rows) json["kernels"].push_back(row->name);
   for (const ParameterValue& p : plan.overrides) json["set"][std::string(p.name)] = p.value;
   return json;
@@ -283,6 +287,20 @@ std::string VerdictSummary(const RowStatistics& s) {
 }
 
 }  // namespace
+
+Json RecordedToJson(const Distribution& distribution) {
+  if (!distribution.recorded) return nullptr;
+  return {{"configurations", distribution.recorded->Size()},
+          {"digest", fmt::format("{:016x}", distribution.recorded->digest)}};
+}
+
+std::string ForShell(const std::string& word) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_./-=", c); };
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
+  std::string quoted;
+  for (const char c : word) c == '\'' ? quoted += "'\\''" : quoted += c;
+  return fmt::format("'{}'", quoted);
+}
 
 std::string HexFloat(double value) { return fmt::format("{:a}", value); }
 
@@ -382,7 +400,7 @@ std::string ToTable(const SweepResult& result) {
 std::string ReplayCommand(const SweepPlan& plan, const KernelRow& row, std::uint64_t index) {
   std::string command =
       fmt::format("definite replay --kernel {} --distribution {} --seed {} --index {}", row.name,
-                  plan.distribution->name, plan.seed, index);
+                  ForShell(plan.distribution->name), plan.seed, index);
   for (const ParameterValue& p : plan.overrides) {
     if (HasParameter(*row.energy, p.name)) command += fmt::format(" --set {}={}", p.name, p.value);
   }

@@ -22,6 +22,9 @@ nlohmann::ordered_json ToJson(const SweepResult& result, const std::vector<std::
 nlohmann::ordered_json ToJson(std::span<const SweepResult> results,
                               const std::vector<std::string>& command, Detail detail);
 
+// What of a file on record was read; null for what is drawn.
+nlohmann::ordered_json RecordedToJson(const Distribution& distribution);
+
 // JSON as text: in one line with histograms; else one key a line, but each row in one line if
 // brief.
 std::string Dump(const nlohmann::ordered_json& json, Detail detail);
@@ -37,6 +40,9 @@ std::string BrokenPromises(const SweepResult& result);
 
 // ", side = -1, eps = 0.5": the energy's parameters that the plan sets.
 std::string Describe(const SweepPlan& plan, const EnergyRow& energy);
+
+// A word that the shell takes for itself, in quotes where it must be.
+std::string ForShell(const std::string& word);
 
 // 3.25 as "0x1.ap+1": read back exactly by any strtod.
 std::string HexFloat(double value);

@@ -29,7 +29,7 @@ void Batch::Draw(const Distribution& distribution, std::uint64_t seed, std::uint
                       x_.Data() + Offset(i, energy_->dofs), p_.Data() + Offset(i, Parameters()));
     // Before the mirror: a parameter may tell where the energy is defined.
     OverrideParameters(energy_->parameters, overrides_, p_.Data() + Offset(i, Parameters()));
-    if (!energy_->mirror.empty()) Mirror(i);
+    if (!energy_->mirror.empty() && !distribution.recorded) Mirror(i);
   }
   Tile();
 }

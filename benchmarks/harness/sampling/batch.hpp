@@ -28,7 +28,7 @@ class Batch {
       : energy_(&energy), overrides_(overrides) {}
 
   // Draws the configurations first, first + 1, ... of a distribution; size is a multiple of kTile.
-  // Those on the side where the energy is not defined are mirrored.
+  // Those on the side where the energy is not defined are mirrored, unless they are on record.
   void Draw(const Distribution& distribution, std::uint64_t seed, std::uint64_t first,
             std::int64_t size);
 

@@ -1,14 +1,35 @@
 #include "benchmarks/harness/sampling/distribution.hpp"
 
 #include <algorithm>
+#include <map>
+
+#include "benchmarks/harness/sampling/recorded.hpp"
 
 namespace definite {
+
+namespace {
+
+Distribution OfFile(const std::string& path) {
+  const auto recorded = std::make_shared<const Recorded>(ReadRecorded(path));
+  return {path, "configurations on record",
+          [recorded](std::string_view stencil) { return stencil == recorded->stencil; },
+          [recorded](const DrawTarget& target, std::uint64_t, std::uint64_t index, double* x,
+                     double* p) { recorded->Take(target, index, x, p); },
+          recorded};
+}
+
+}  // namespace
 
 const Distribution* FindDistribution(std::string_view name) {
   for (const Distribution& distribution : AllDistributions()) {
     if (distribution.name == name) return &distribution;
   }
-  return nullptr;
+  if (!IsRecorded(name)) return nullptr;
+  static std::map<std::string, Distribution, std::less<>> files;
+  const auto at = files.find(name);
+  if (at != files.end()) return &at->second;
+  const std::string path(name);
+  return &files.emplace(path, OfFile(path)).first->second;
 }
 
 bool HasParameter(const EnergyRow& energy, std::string_view name) {

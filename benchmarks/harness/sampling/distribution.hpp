@@ -2,7 +2,10 @@
 
 #include <concepts>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "benchmarks/harness/sampling/random.hpp"
@@ -23,17 +26,25 @@ struct DrawTarget {
   std::span<const Parameter> parameters;  // with the energy's own values
 };
 
+struct Recorded;
+
 // A way to draw configurations. A configuration is named by (distribution, seed, index).
 struct Distribution {
-  std::string_view name, description;
-  bool (*supports)(std::string_view stencil);
+  std::string name, description;
+  std::function<bool(std::string_view stencil)> supports;
   // Fills x (dofs numbers) and p (one number for each parameter). Only for supported stencils.
-  void (*draw)(const DrawTarget& target, std::uint64_t seed, std::uint64_t index, double* x,
-               double* p);
+  std::function<void(const DrawTarget& target, std::uint64_t seed, std::uint64_t index, double* x,
+                     double* p)>
+      draw;
+  // The file they come from (recorded.hpp), whatever the seed; null if they are drawn.
+  std::shared_ptr<const Recorded> recorded = nullptr;
 };
 
 // By name, in alphabetical order of their files.
 std::span<const Distribution> AllDistributions();
+
+// One of these; or that of a file, by its path, which is read at the first call. Null if there is
+// none of this name; throws RecordedError if the file is not as it should be. Not thread safe.
 const Distribution* FindDistribution(std::string_view name);
 
 // What a file in distributions/ defines: a name, the stencils it can draw, the parameters it
@@ -58,9 +69,9 @@ void FillParameters(std::span<const Parameter> parameters,
                     std::span<const ParameterValue> overrides, double* p);
 
 template <DistributionType D>
-constexpr Distribution MakeDistribution() {
+Distribution MakeDistribution() {
   return {
-      D::kName, D::kDescription, D::Supports,
+      std::string(D::kName), std::string(D::kDescription), D::Supports,
       [](const DrawTarget& target, std::uint64_t seed, std::uint64_t index, double* x, double* p) {
         constexpr std::uint64_t kStream = StreamId(D::kName);
         Draws draws(kStream, seed, index);

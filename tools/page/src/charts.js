@@ -1,5 +1,5 @@
 // The charts, as Vega-Lite specifications with their data in them. `width` is that of the page.
-import { costs, errors, familyNames, groupBy, pareto, points, replay } from "./data.js";
+import { costs, errors, familyNames, groupBy, pareto, points, replay, split, times } from "./data.js";
 
 // Okabe and Ito's colours, which people tell apart however they see colour; black and yellow, which
 // one of the two backgrounds would swallow, are replaced.
@@ -41,7 +41,7 @@ export function paretoChart(rows, width, { cost, error }) {
     ...panelled(values, size),
     spec: {
       width: size.width,
-      height: Math.max(200, Math.round(0.75 * size.width)),
+      height: Math.min(420, Math.max(200, Math.round(0.75 * size.width))),
       layer: [
         { transform: [{ filter: "datum.hull" }],
           mark: { type: "line", strokeDash: [4, 3], opacity: 0.6, color: "#888" },
@@ -126,18 +126,12 @@ export function relabellingChart(rows, width) {
   };
 }
 
-// A row of `definite speed`: its energy, and the rest of its name.
-function split({ kernel, output }) {
-  const parts = kernel.split("/"), at = parts.length - (parts.at(-1) === output ? 3 : 2);
-  return { panel: short(parts.slice(0, at).join("/")), name: parts.slice(at).join("/") };
-}
-
 export const ringsOf = (speed) => [...new Set(speed.rows.filter((r) => r.floor && r.threads === 1).map((r) => r.ring))];
 
 // Each kernel beside the least time that this machine's arithmetic and stores allow.
 export function floorChart(speed, width, { ring }) {
   const values = speed.rows.filter((r) => r.floor && r.threads === 1 && r.ring === ring).map((r) => ({
-    kernel: r.kernel, output: r.output, ring: r.ring, ...split(r), ns: r.ns_per_hessian.median,
+    kernel: r.kernel, output: r.output, ring: r.ring, panel: short(split(r).energy), name: split(r).name, ns: r.ns_per_hessian.median,
     floor: r.floor.ns, times: r.ns_per_hessian.median / r.floor.ns, binds: r.floor.binds,
   }));
   if (!values.length) return null;
@@ -189,5 +183,30 @@ export function stagesChart(speed, width) {
       order: { field: "order" },
       tooltip: [{ field: "kernel" }, { field: "stage" }, { field: "seconds", format: ".3g" }],
     },
+  };
+}
+
+// What each kernel took in run after run of one machine.
+export function historyChart(results, width) {
+  const values = times(results).map(({ energy, ...t }) => ({ panel: short(energy), ...t }));
+  if (!values.length) return null;
+  const size = panels(width, groups(values).length);
+  const y = { type: "quantitative", title: "ns per Hessian", scale: { type: "log", nice: false, padding: 8 }, axis: { format: "~g", tickCount: 5 } };
+  const detail = [{ field: "kernel" }, { field: "distribution" }];
+  return {
+    ...panelled(values, size),
+    spec: {
+      width: size.width, height: 260,
+      encoding: { x: { field: "run", type: "ordinal", title: "run", axis: { labelAngle: 0 } }, color: family, detail },
+      layer: [
+        { mark: { type: "line", strokeWidth: 1.5 }, encoding: { y: { field: "ns", ...y } } },
+        { mark: { type: "rule", strokeWidth: 3, opacity: 0.4 }, encoding: { y: { field: "low", ...y }, y2: { field: "high" } } },
+        { mark: { type: "point", filled: true, size: 30 },
+          encoding: { y: { field: "ns", ...y },
+                      tooltip: [{ field: "kernel" }, { field: "distribution" }, { field: "file" }, { field: "commit" }, { field: "ns", format: ".3g" },
+                                { field: "low", format: ".3g" }, { field: "high", format: ".3g" }] } },
+      ],
+    },
+    resolve: { scale: { y: "independent" } },
   };
 }

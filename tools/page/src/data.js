@@ -77,8 +77,9 @@ export function rowsOf(results) {
     })));
 }
 
+const forShell = (word) => (/^[\w./=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 export const replay = (r, index) =>
-  `definite replay --kernel ${r.kernel} --distribution ${r.distribution} --seed ${r.seed} --index ${index}${r.set}`;
+  `definite replay --kernel ${r.kernel} --distribution ${forShell(r.distribution)} --seed ${r.seed} --index ${index}${r.set}`;
 
 // Two axes of the rows that have both. On a logarithmic axis 0 stands at `least`, "inf" at `most`.
 export function points(rows, cost, error) {
@@ -97,6 +98,25 @@ export function points(rows, cost, error) {
     median: y.value, p99: y.high, max: y.max,
     replay: replay(r, row.accuracy[error].max.index),
   }));
+}
+
+// A row of `definite speed`: its energy, and the rest of its name.
+export function split({ kernel, output }) {
+  const parts = kernel.split("/"), at = parts.length - (parts.at(-1) === output ? 3 : 2);
+  return { energy: parts.slice(0, at).join("/"), filter: parts[at], name: parts.slice(at).join("/") };
+}
+
+// What each kernel took in each of several runs, in their order; of those that were timed twice.
+export function times(results) {
+  const all = results.flatMap(({ file, json }, run) => [
+    ...json.rows.map((row) => ({ ...row, name: `${row.filter}/${row.scalar}`, ns: timing(row)?.ns_per_hessian })),
+    ...(json.speed?.rows ?? []).filter((r) => r.ring === "L1" && r.threads === 1)
+      .map((r) => ({ ...split(r), kernel: r.kernel, distribution: json.speed.distribution, ns: r.ns_per_hessian })),
+  ].filter(({ ns }) => ns).map(({ kernel, energy, filter, name, distribution, ns }) => ({
+    run: run + 1, file, commit: json.build.commit, kernel, energy, filter, name, distribution,
+    ns: ns.median, low: ns.low, high: ns.high, family: familyOf(filter),
+  })));
+  return [...groupBy(all, (t) => `${t.kernel} ${t.distribution}`).values()].filter((of) => of.length > 1).flat();
 }
 
 // Marks what another point beats in both axes, and gives the lower left convex hull, on logarithms.

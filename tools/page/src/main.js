@@ -1,13 +1,14 @@
 import { parse, View } from "vega";
 import { compile } from "vega-lite";
 import { Handler } from "vega-tooltip";
-import { distributionChart, floorChart, paretoChart, relabellingChart, ringsOf, stagesChart } from "./charts.js";
+import { distributionChart, floorChart, historyChart, paretoChart, relabellingChart, ringsOf, stagesChart } from "./charts.js";
 import { costs, errors, points, rowsOf } from "./data.js";
 import { csv, fromMarkdown, save } from "./tables.js";
 import { theme } from "./theme.js";
 
-const { results } = JSON.parse(document.getElementById("data").textContent);
-const rows = rowsOf(results);
+const { results, history } = JSON.parse(document.getElementById("data").textContent);
+const shown = history ? results.slice(-1) : results;  // of a history the charts of one run show the last
+const rows = rowsOf(shown);
 const main = document.querySelector("main");
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const redraws = [];
@@ -27,7 +28,7 @@ function section(id, title, says) {
 
 function picker(name, options, chosen, change) {
   const select = element("select", { name });
-  for (const [value, text, disabled] of options) select.append(element("option", { value, textContent: text, disabled, selected: value === chosen }));
+  for (const [value, text] of options) select.append(element("option", { value, textContent: text, selected: value === chosen }));
   select.addEventListener("change", () => change(select.value));
   return element("label", {}, `${name} `, select);
 }
@@ -63,10 +64,18 @@ if (rows.length) {
   if (has(choice.cost, choice.error)) {
     const s = section("pareto", "Cost against error", "Each point is a filter. Lower is nearer to its aim, left is cheaper. A whisker goes from the median to the 99th percentile; a hollow point is not always PSD; a faint one is beaten in both by another; the dashed line is the convex hull of those that are not. An error of 0 stands at the lower edge, an infinite one at the upper.");
     const { tools, draw } = chart(s, (width) => paretoChart(rows, width, choice), "pareto");
-    for (const [axis, all] of [["cost", costs], ["error", errors]]) {
-      const usable = Object.entries(all).map(([key, { title }]) => [key, title, axis === "cost" ? !has(key, "distance") : !has(choice.cost, key)]);
-      tools.prepend(picker(axis, usable, choice[axis], (value) => { choice[axis] = value; draw(); }));
-    }
+    const pickers = [["error", errors], ["cost", costs]].map(([axis, all]) =>
+      [axis, picker(axis, Object.entries(all).map(([key, { title }]) => [key, title]), choice[axis], (value) => { choice[axis] = value; usable(); draw(); })]);
+    // What has no points beside the other choice cannot be chosen.
+    const usable = () => {
+      for (const [axis, label] of pickers) {
+        for (const option of label.querySelectorAll("option")) {
+          option.disabled = axis === "cost" ? !has(option.value, choice.error) : !has(choice.cost, option.value);
+        }
+      }
+    };
+    for (const [, label] of pickers) tools.prepend(label);
+    usable();
   }
   if (distributionChart(rows, 900)) {
     chart(section("distribution", "How far from the nearest PSD matrix", "The share of configurations at each distance, relative to the norm of the Hessian's nearest PSD matrix, in steps of a quarter of a decade."), (width) => distributionChart(rows, width), "distribution");
@@ -76,21 +85,25 @@ if (rows.length) {
   }
 }
 
-for (const { file, json } of results) {
-  if (!json.speed) continue;
+if (history) {
+  chart(section("history", "One machine over time", "Time per Hessian in each run, in the order of the files, with its 95 % interval. Neighbouring runs differ by what the machine does besides; definite compare decides."), (width) => historyChart(results, width), "history");
+}
+
+shown.filter(({ json }) => json.speed).forEach(({ file, json }, i, all) => {
+  const [suffix, whose] = all.length > 1 ? [`-${i + 1}`, `: ${file}`] : ["", ""];
   const rings = ringsOf(json.speed);
   if (rings.length) {
     const choice = { ring: rings[0] };
-    const s = section("floors", "How near to the machine's limit", `A tick is the least time that arithmetic, divisions and stores of ${json.machine.cpu} allow; a dot is what the kernel takes, its outputs going to the ring chosen (${file}).`);
+    const s = section(`floors${suffix}`, `How near to the machine's limit${whose}`, `A tick is the least time that arithmetic, divisions and stores of ${json.machine.cpu} allow; a dot is what the kernel takes, its outputs going to the ring chosen (${file}).`);
     const { tools, draw } = chart(s, (width) => floorChart(json.speed, width, choice), "floors");
     tools.prepend(picker("ring", rings.map((ring) => [ring, ring]), choice.ring, (value) => { choice.ring = value; draw(); }));
   }
   if (stagesChart(json.speed, 900)) {
-    chart(section("stages", "Where the time of a job goes", "Drawing the inputs included."), (width) => stagesChart(json.speed, width), "stages");
+    chart(section(`stages${suffix}`, `Where the time of a job goes${whose}`, "Drawing the inputs included."), (width) => stagesChart(json.speed, width), "stages");
   }
-}
+});
 
-results.forEach(({ file, markdown }, i) => {
+shown.forEach(({ file, markdown }, i) => {
   if (!markdown) return;
   const s = section(`tables-${i + 1}`, `Tables: ${file}`, "A click on a heading sorts.");
   const long = markdown.split("\n").length > 200;  // a reader looks for one of its lines
