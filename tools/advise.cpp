@@ -76,7 +76,7 @@ SweepPlan PlanOf(const AdviseOptions& options) {
   plan.count = recorded.Size();
   plan.threads = ThreadsOf(options.threads);
   // A million lines in seconds: `numeric` and what float128 says come from fewer of them.
-  plan.samples = {20'000, 20'000, 100};
+  plan.samples = {10'000, 5'000, 100};
   return plan;
 }
 
@@ -129,7 +129,7 @@ void AddAdvise(CLI::App& app, int& exit_code) {
       "The cheapest filter that is PSD in every configuration and within the tolerance is the one\n"
       "to take; exit code 1 if there is none. Filters are timed and checked as definite sweep "
       "does\n"
-      "it, numeric on 20,000 of the lines. The file is a distribution as well.\n\n"
+      "it, numeric on 10,000 of the lines. The file is a distribution as well.\n\n"
       "Examples:\n"
       "  definite advise contacts.csv\n"
       "  definite advise contacts.csv --energy signed/log_barrier --set eps=1e-3 --tolerance 0.01\n"

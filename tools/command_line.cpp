@@ -13,6 +13,7 @@
 
 #include "benchmarks/harness/merge.hpp"
 #include "benchmarks/harness/sampling/recorded.hpp"
+#include "fuzz/family.hpp"
 
 namespace definite {
 
@@ -151,6 +152,10 @@ const Distribution& DistributionNamed(const std::string& name) {
   for (const Distribution& d : AllDistributions()) {
     known += fmt::format("\n  {:<8} {}", d.name, d.description);
   }
+  known += "\nor fuzz/ and a family of degenerate ones:";
+  for (const fuzz::Family& family : fuzz::AllFamilies()) {
+    known += fmt::format("\n  {:<14} {}", family.name, family.meaning);
+  }
   throw UsageError(fmt::format(
       "--distribution '{}': expected one of{}\nor a .csv or .jsonl file of configurations", name,
       known));
@@ -172,7 +177,7 @@ void AddDistributionOption(CLI::App& command, std::string& name) {
   }
   command
       .add_option("--distribution", name,
-                  fmt::format("{}, or a .csv or .jsonl file (default: {})", known, name))
+                  fmt::format("{}, fuzz/FAMILY, .csv or .jsonl (default: {})", known, name))
       ->type_name("NAME");
 }
 

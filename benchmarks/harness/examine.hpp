@@ -114,8 +114,13 @@ class Examiner {
   void ExamineSpectrum(std::size_t r, const double* x, const double* p, const ExactOutput& exact,
                        const RowOutput& output);
   void ExamineTruth(std::size_t r, Packed f, Definitions& definitions);
+  // Whether the digits of the input leave room for f beside the row's definition.
+  bool IsOpen(std::size_t r, Packed f, Definitions& definitions) const;
+  // How far the digits of the relabelled pair that differs most leave a definition open.
+  double OpenElsewhere(const reference::Filter<reference::Quad>& filter, const double* p) const;
   void ExamineEnergy(const double* x, const double* p, Definitions& definitions);
   double Bound() const;  // of an error relative to |F|, by the conditioning
+  double Bound(const double* x, const double* p) const;
 
   const EnergyRow* energy_;
   std::vector<const KernelRow*> rows_;
@@ -123,10 +128,12 @@ class Examiner {
   const KernelRow* nearest_;
   const reference::Energy<double>* reference_;
   const reference::Energy<reference::Quad>* quad_reference_;
+  const reference::Filter<reference::Quad>* exact_filter_;
   std::vector<const reference::Filter<double>*> filters_;
   std::vector<const reference::Filter<reference::Quad>*> quad_filters_;
   ConfigurationFigures configuration_;
   std::vector<RowFigures> figures_;
+  std::vector<double> relabelled_;  // the numbering that changed a row's result most
 };
 
 }  // namespace definite

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "benchmarks/harness/sampling/recorded.hpp"
+#include "fuzz/family.hpp"
 
 namespace definite {
 
@@ -24,6 +25,7 @@ const Distribution* FindDistribution(std::string_view name) {
   for (const Distribution& distribution : AllDistributions()) {
     if (distribution.name == name) return &distribution;
   }
+  if (const Distribution* family = fuzz::FindFamily(name)) return family;
   if (!IsRecorded(name)) return nullptr;
   static std::map<std::string, Distribution, std::less<>> files;
   const auto at = files.find(name);

@@ -43,8 +43,9 @@ struct Distribution {
 // By name, in alphabetical order of their files.
 std::span<const Distribution> AllDistributions();
 
-// One of these; or that of a file, by its path, which is read at the first call. Null if there is
-// none of this name; throws RecordedError if the file is not as it should be. Not thread safe.
+// One of these; or that of a degenerate family (fuzz/family.hpp); or of a file, by its path, which is
+// read at the first call. Null if there is none of this name; throws RecordedError if the file is not
+// as it should be. Not thread safe.
 const Distribution* FindDistribution(std::string_view name);
 
 // What a file in distributions/ defines: a name, the stencils it can draw, the parameters it

@@ -1,0 +1,96 @@
+#include "benchmarks/harness/neighbours.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "benchmarks/harness/sampling/random.hpp"
+
+namespace definite {
+
+namespace {
+
+using reference::Quad;
+using reference::Truth;
+
+constexpr double kMoved = 8 * kUnit;  // of an edge, relative to its length
+constexpr int kDirections = 4;        // each taken forwards and backwards
+
+// The edges that a kernel begins with, from vertex to vertex: a tree, by which moved edges give
+// moved vertices.
+std::vector<std::pair<int, int>> Tree(std::string_view stencil, int vertices) {
+  if (stencil == "vertex_face") return {{2, 1}, {2, 3}, {2, 0}};
+  if (stencil == "edge_edge") return {{0, 1}, {0, 2}, {2, 3}};
+  if (stencil == "vertex_edge" || stencil == "corner") return {{1, 0}, {1, 2}};
+  std::vector<std::pair<int, int>> star;
+  for (int v = 1; v < vertices; ++v) star.push_back({0, v});
+  return star;
+}
+
+// Beside a border of the domain there is no telling what a neighbour gives.
+double Finite(double change) {
+  return std::isfinite(change) ? change : std::numeric_limits<double>::infinity();
+}
+
+template <class Matrix>
+double Distance(const Matrix& a, const Matrix& b) {
+  return Finite(static_cast<double>(reference::FrobeniusNorm(a - b)));
+}
+
+}  // namespace
+
+Neighbours::Neighbours(const EnergyRow& energy, const reference::Energy<Quad>& definition,
+                       const double* x, const double* p) {
+  const int d = energy.dimension, vertices = energy.dofs / d;
+  const std::vector<Quad> quad_p(p, p + energy.parameters.size());
+  const auto at = [d](int vertex, int k) { return static_cast<std::size_t>(vertex * d + k); };
+  for (int direction = 0; direction < kDirections; ++direction) {
+    for (const double sign : {1.0, -1.0}) {
+      Draws draws(StreamId("neighbours"), 0, static_cast<std::uint64_t>(direction));
+      std::vector<Quad> moved(x, x + energy.dofs);
+      for (const auto& [from, to] : Tree(energy.stencil, vertices)) {
+        double length = 0;
+        for (int k = 0; k < d; ++k)
+          length = std::max(length, std::abs(x[at(to, k)] - x[at(from, k)]));
+        for (int k = 0; k < d; ++k) {
+          const Quad edge = Quad(x[at(to, k)]) - Quad(x[at(from, k)]);
+          moved[at(to, k)] = moved[at(from, k)] + edge +
+                             Quad(sign * kMoved * (2 * draws.OpenUniform() - 1)) * Quad(length);
+        }
+      }
+      truths_.emplace_back(definition, moved.data(), quad_p.data());
+    }
+  }
+}
+
+double Neighbours::Change(const reference::Filter<Quad>& filter, Truth<Quad>& truth) {
+  const auto [at, is_new] = changes_.try_emplace(&filter, 0);
+  if (is_new) {
+    const auto definition = filter.define(truth);
+    for (Truth<Quad>& neighbour : truths_) {
+      at->second = std::max(at->second, Distance(filter.define(neighbour), definition));
+    }
+  }
+  return at->second;
+}
+
+double Neighbours::ValueChange(Truth<Quad>& truth) {
+  double change = 0;
+  for (Truth<Quad>& neighbour : truths_) {
+    const auto difference = static_cast<double>(neighbour.Value() - truth.Value());
+    change = std::max(change, Finite(std::abs(difference)));
+  }
+  return change;
+}
+
+double Neighbours::GradientChange(Truth<Quad>& truth) {
+  double change = 0;
+  for (Truth<Quad>& neighbour : truths_) {
+    change = std::max(change, Distance(neighbour.Gradient(), truth.Gradient()));
+  }
+  return change;
+}
+
+}  // namespace definite

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cmath>
+
+#include "fuzz/family.hpp"
+
+namespace definite::fuzz::families {
+
+// Other units of length: down to 1e-320, where lengths are subnormal, or up to 1e292.
+struct Scale {
+  static constexpr std::string_view kName = "scale";
+  static constexpr std::string_view kMeaning = "lengths times its 20th power, or over its 18th";
+  static constexpr std::span<const std::string_view> kStencils = kEverything;
+
+  static void Deform(const Genes& genes, Shape& shape) {
+    if (genes.delta == 0) return;
+    const int exponent = std::ilogb(genes.delta);
+    shape.unit = std::ldexp(genes.delta, (genes.negative ? -19 : 19) * exponent);
+  }
+};
+
+}  // namespace definite::fuzz::families
+
+DEFINITE_FAMILY(Scale);

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "fuzz/family.hpp"
+
+namespace definite::fuzz::families {
+
+// A strand that is nearly straight, or folded back on itself.
+struct Straight {
+  static constexpr std::string_view kName = "straight";
+  static constexpr std::string_view kMeaning = "pi less the angle of a strand, or the angle";
+  static constexpr std::span<const std::string_view> kStencils = kStrands;
+
+  static void Deform(const Genes& genes, Shape& shape) {
+    shape.sine = genes.delta;
+    shape.obtuse = !genes.negative;
+  }
+};
+
+}  // namespace definite::fuzz::families
+
+DEFINITE_FAMILY(Straight);

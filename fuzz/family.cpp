@@ -1,0 +1,176 @@
+#include "fuzz/family.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace definite::fuzz {
+
+namespace {
+
+using Point = std::array<double, 3>;
+
+// 2^f for f in [0,1], in + and * alone: the same bits everywhere. Good to three digits, which is
+// enough for a distribution.
+double ShortPower(double f) { return 1 + f * (0.6931 + f * (0.2402 + f * (0.0555 + f * 0.0112))); }
+
+// With twelve significant bits.
+double Short(double value) {
+  if (value == 0 || !std::isfinite(value)) return value;
+  const int exponent = std::ilogb(value);
+  return std::ldexp(std::nearbyint(std::ldexp(value, 11 - exponent)), exponent - 11);
+}
+
+Point Plus(const Point& p, double s, const Point& q) {
+  return {p[0] + s * q[0], p[1] + s * q[1], p[2] + s * q[2]};
+}
+
+// By the quaternion of four numbers, which need not be a unit.
+Point Turned(const Point& p, const std::array<double, 4>& q) {
+  const auto [w, x, y, z] = q;
+  const double s = 2 / (w * w + x * x + y * y + z * z);
+  return {p[0] - s * ((y * y + z * z) * p[0] - (x * y - w * z) * p[1] - (x * z + w * y) * p[2]),
+          p[1] - s * ((x * x + z * z) * p[1] - (x * y + w * z) * p[0] - (y * z - w * x) * p[2]),
+          p[2] - s * ((x * x + y * y) * p[2] - (x * z - w * y) * p[0] - (y * z + w * x) * p[1])};
+}
+
+// The vertices in their own plane.
+std::array<Point, 4> Vertices(const Shape& s, std::string_view stencil) {
+  const double cosine = std::sqrt(1 - s.sine * s.sine);
+  const Point e0 = {s.length0, 0, 0},
+              e1 = {(s.obtuse ? -cosine : cosine) * s.length1, s.sine * s.length1, 0},
+              n = {0, 0, s.l}, origin = {0, 0, 0};
+  if (stencil == "vertex_face") return {Plus(Plus(n, s.a, e0), s.b, e1), e0, origin, e1};
+  if (stencil == "edge_edge") {
+    const Point e2 = Plus(Plus(n, s.a, e0), -s.b, e1);
+    return {origin, e0, e2, Plus(e2, 1, e1)};
+  }
+  if (stencil == "vertex_edge") return {Plus(n, s.a, e0), origin, e0, origin};
+  if (stencil == "vertex_vertex") return {origin, n, origin, origin};
+  return {e0, origin, e1, origin};
+}
+
+Shape InShort(const Shape& s) {
+  Shape shape = s;
+  for (double* value : {&shape.length0, &shape.length1, &shape.sine, &shape.a, &shape.b, &shape.l,
+                        &shape.eps, &shape.unit}) {
+    *value = Short(*value);
+  }
+  return shape;
+}
+
+Distribution DistributionOf(const Family& family, std::optional<int> decade,
+                            const std::string& name) {
+  return {name, std::string(family.meaning),
+          [&family](std::string_view stencil) { return family.Has(stencil); },
+          [&family, decade](const DrawTarget& target, std::uint64_t seed, std::uint64_t index,
+                            double* x, double* p) {
+            Draws draws(StreamId(family.name), seed, index);
+            Make(family, DrawGenes(draws, decade), target, x, p);
+          }};
+}
+
+}  // namespace
+
+Genes DrawGenes(Draws& draws, std::optional<int> decade) {
+  constexpr double kOctaves = 53.15;  // in sixteen decades
+  Genes genes;
+  const double t = draws.OpenUniform(), zero = draws.OpenUniform();
+  const double decades = decade ? *decade + t : 16 * t;
+  const double octaves = decades / 16 * kOctaves, whole = std::floor(octaves);
+  genes.delta = std::ldexp(1 / ShortPower(octaves - whole), -static_cast<int>(whole));
+  if (decade ? *decade == 16 : zero < 1. / 17) genes.delta = 0;
+  genes.negative = draws.OpenUniform() < 0.5;
+  const double pose = draws.OpenUniform();
+  genes.pose = pose < 0.25 ? Genes::kAxes : pose < 0.5 ? Genes::kDyadic : Genes::kTurned;
+  for (double& u : genes.u) u = draws.OpenUniform();
+  return genes;
+}
+
+Shape OrdinaryShape(const Genes& genes) {
+  const auto& u = genes.u;
+  Shape shape;
+  shape.length0 = 0.5 + 1.5 * u[0];
+  shape.length1 = 0.5 + 1.5 * u[1];
+  shape.sine = 0.5 + 0.5 * u[2];
+  shape.obtuse = u[3] < 0.5;
+  shape.a = u[4];
+  shape.b = u[5];
+  if (shape.a + shape.b > 1) {  // inside a face, which no pair of edges minds
+    shape.a = 1 - shape.a;
+    shape.b = 1 - shape.b;
+  }
+  shape.eps = 0.05 + 0.2 * u[6];
+  shape.l = (2 * u[7] - 1) * shape.eps;
+  shape.unit = 1;
+  shape.shift = {};
+  return shape;
+}
+
+void Pose(const Shape& given, const Genes& genes, const DrawTarget& target, double* x, double* p) {
+  const Shape shape = genes.pose == Genes::kDyadic ? InShort(given) : given;
+  double unit = shape.unit;
+  for (std::size_t i = 0; i < target.parameters.size(); ++i) {
+    const Parameter& parameter = target.parameters[i];
+    double power = 1;
+    for (int k = 0; k < std::abs(parameter.length_power); ++k) power *= shape.unit;
+    if (parameter.length_power < 0) power = 1 / power;
+    p[i] = (parameter.name == "eps" ? shape.eps : parameter.value) * power;
+    // Where a parameter cannot be said in these units, the configuration stays in its own.
+    if (parameter.length_power > 1 && !std::isnormal(p[i])) unit = 1;
+  }
+  if (unit != shape.unit) {
+    for (std::size_t i = 0; i < target.parameters.size(); ++i) {
+      p[i] = target.parameters[i].name == "eps" ? shape.eps : target.parameters[i].value;
+    }
+  }
+  const auto& u = genes.u;
+  const std::array<double, 4> turn = {NormalQuantile(u[8]), NormalQuantile(u[9]),
+                                      NormalQuantile(u[10]), NormalQuantile(u[11])};
+  const std::array<Point, 4> vertices = Vertices(shape, target.stencil);
+  for (int v = 0; v < target.dofs / 3; ++v) {
+    Point at = vertices[static_cast<std::size_t>(v)];
+    if (genes.pose == Genes::kTurned) at = Turned(at, turn);
+    at = Plus(at, 1, shape.shift);
+    for (const double coordinate : at) *x++ = coordinate * unit;
+  }
+}
+
+bool Family::Has(std::string_view stencil) const {
+  return std::ranges::find(stencils, stencil) != stencils.end();
+}
+
+void Make(const Family& family, const Genes& genes, const DrawTarget& target, double* x,
+          double* p) {
+  Shape shape = OrdinaryShape(genes);
+  family.deform(genes, shape);
+  Pose(shape, genes, target, x, p);
+}
+
+const Distribution* FindFamily(std::string_view name) {
+  constexpr std::string_view kPrefix = "fuzz/";
+  if (!name.starts_with(kPrefix)) return nullptr;
+  std::string_view rest = name.substr(kPrefix.size());
+  std::optional<int> decade;
+  if (const std::size_t slash = rest.find('/'); slash != rest.npos) {
+    const std::string_view text = rest.substr(slash + 1);
+    int value = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 16) {
+      return nullptr;
+    }
+    decade = value;
+    rest = rest.substr(0, slash);
+  }
+  const auto family = std::ranges::find(AllFamilies(), rest, &Family::name);
+  if (family == AllFamilies().end()) return nullptr;
+  static std::map<std::string, Distribution, std::less<>> made;
+  const auto at = made.find(name);
+  if (at != made.end()) return &at->second;
+  const std::string key(name);
+  return &made.emplace(key, DistributionOf(*family, decade, key)).first->second;
+}
+
+}  // namespace definite::fuzz
