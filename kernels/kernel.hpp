@@ -285,6 +285,9 @@ struct EnergyRow {
   std::span<const int> relabellings;
   // Of an energy that is defined on one side only: the permutation that leads there from the other.
   std::span<const int> mirror;
+  // The edges that the energy begins with, from vertex to vertex, each from one that an edge before
+  // it leads to.
+  std::span<const int> tree;
   int dimension;          // coordinates of a vertex
   TileFunction value;     // 1 number
   TileFunction gradient;  // dofs numbers

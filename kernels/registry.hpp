@@ -96,6 +96,7 @@ EnergyRow MakeEnergy() {
   row.parameters = E::kParameters;
   row.relabellings = Stencil::kRelabellings;
   if constexpr (requires { E::kMirror; }) row.mirror = E::kMirror;
+  row.tree = Stencil::kTree;
   row.dimension = Stencil::kDimension;
   row.value = [](const double* x, const double* p, double* out, long tiles) {
     ForTiles<E, ScalarTile, 1>(

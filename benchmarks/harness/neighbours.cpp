@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "benchmarks/harness/sampling/random.hpp"
@@ -15,19 +14,8 @@ namespace {
 using reference::Quad;
 using reference::Truth;
 
-constexpr double kMoved = 8 * kUnit;  // of an edge, relative to its length
+constexpr double kMoved = 8 * kUnit;  // of an edge, relative to its longest component
 constexpr int kDirections = 4;        // each taken forwards and backwards
-
-// The edges that a kernel begins with, from vertex to vertex: a tree, by which moved edges give
-// moved vertices.
-std::vector<std::pair<int, int>> Tree(std::string_view stencil, int vertices) {
-  if (stencil == "vertex_face") return {{2, 1}, {2, 3}, {2, 0}};
-  if (stencil == "edge_edge") return {{0, 1}, {0, 2}, {2, 3}};
-  if (stencil == "vertex_edge" || stencil == "corner") return {{1, 0}, {1, 2}};
-  std::vector<std::pair<int, int>> star;
-  for (int v = 1; v < vertices; ++v) star.push_back({0, v});
-  return star;
-}
 
 // Beside a border of the domain there is no telling what a neighbour gives.
 double Finite(double change) {
@@ -43,17 +31,20 @@ double Distance(const Matrix& a, const Matrix& b) {
 
 Neighbours::Neighbours(const EnergyRow& energy, const reference::Energy<Quad>& definition,
                        const double* x, const double* p) {
-  const int d = energy.dimension, vertices = energy.dofs / d;
+  const int d = energy.dimension;
   const std::vector<Quad> quad_p(p, p + energy.parameters.size());
   const auto at = [d](int vertex, int k) { return static_cast<std::size_t>(vertex * d + k); };
   for (int direction = 0; direction < kDirections; ++direction) {
     for (const double sign : {1.0, -1.0}) {
       Draws draws(StreamId("neighbours"), 0, static_cast<std::uint64_t>(direction));
       std::vector<Quad> moved(x, x + energy.dofs);
-      for (const auto& [from, to] : Tree(energy.stencil, vertices)) {
+      // Along the tree: moved edges give moved vertices.
+      for (std::size_t e = 0; e < energy.tree.size(); e += 2) {
+        const int from = energy.tree[e], to = energy.tree[e + 1];
         double length = 0;
-        for (int k = 0; k < d; ++k)
+        for (int k = 0; k < d; ++k) {
           length = std::max(length, std::abs(x[at(to, k)] - x[at(from, k)]));
+        }
         for (int k = 0; k < d; ++k) {
           const Quad edge = Quad(x[at(to, k)]) - Quad(x[at(from, k)]);
           moved[at(to, k)] = moved[at(from, k)] + edge +

@@ -16,6 +16,7 @@ struct Corner {
   static constexpr int kDofs = 9;
   static constexpr int kDimension = 3;
   static constexpr int kRelabellings[] = {2, 1, 0};  // read from the other end
+  static constexpr int kTree[] = {1, 0, 1, 2};
 };
 
 }  // namespace definite

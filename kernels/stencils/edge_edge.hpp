@@ -18,6 +18,7 @@ struct EdgeEdge {
   // The edges swapped; both reversed; both. One edge reversed would flip the signed length.
   static constexpr int kRelabellings[] = {2, 3, 0, 1, 1, 0, 3, 2, 3, 2, 1, 0};
   static constexpr int kMirror[] = {0, 1, 3, 2};
+  static constexpr int kTree[] = {0, 1, 0, 2, 2, 3};
 
   static constexpr int kEdges = 3;
   static constexpr int kInEdges[4][3] = {{-1, 0, -1}, {1, 0, 0}, {0, -1, 1}, {0, 1, 0}};

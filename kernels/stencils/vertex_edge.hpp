@@ -16,6 +16,7 @@ struct VertexEdge {
   static constexpr int kDofs = 9;
   static constexpr int kDimension = 3;
   static constexpr int kRelabellings[] = {0, 2, 1};  // the edge reversed
+  static constexpr int kTree[] = {1, 0, 1, 2};
 
   // Edges x2 - x1 and x0 - x1.
   static constexpr int kEdges = 2;

@@ -19,6 +19,7 @@ struct VertexFace {
   // Cyclic turns of the triangle. A swap of two of its vertices would flip the signed length.
   static constexpr int kRelabellings[] = {0, 2, 3, 1, 0, 3, 1, 2};
   static constexpr int kMirror[] = {0, 3, 2, 1};  // one that does flip it
+  static constexpr int kTree[] = {2, 1, 2, 3, 2, 0};
 
   static constexpr int kEdges = 3;
   static constexpr int kInEdges[4][3] = {{0, 0, 1}, {1, 0, 0}, {-1, -1, -1}, {0, 1, 0}};

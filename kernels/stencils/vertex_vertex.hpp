@@ -16,6 +16,7 @@ struct VertexVertex {
   static constexpr int kDofs = 6;
   static constexpr int kDimension = 3;
   static constexpr int kRelabellings[] = {1, 0};
+  static constexpr int kTree[] = {0, 1};
 
   // The edge x1 - x0.
   static constexpr int kEdges = 1;
