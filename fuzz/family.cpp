@@ -61,6 +61,20 @@ Shape InShort(const Shape& s) {
   return shape;
 }
 
+// The parameters in a unit of length; false if one that is more than a length cannot be said in it.
+bool ParametersIn(double unit, const Shape& shape, const DrawTarget& target, double* p) {
+  bool said = true;
+  for (const Parameter& parameter : target.parameters) {
+    double power = 1;
+    for (int k = 0; k < std::abs(parameter.length_power); ++k) power *= unit;
+    if (parameter.length_power < 0) power = 1 / power;
+    *p = (parameter.name == "eps" ? shape.eps : parameter.value) * power;
+    if (parameter.length_power > 1 && !std::isnormal(*p)) said = false;
+    ++p;
+  }
+  return said;
+}
+
 Distribution DistributionOf(const Family& family, std::optional<int> decade,
                             const std::string& name) {
   return {name, std::string(family.meaning),
@@ -111,21 +125,9 @@ Shape OrdinaryShape(const Genes& genes) {
 
 void Pose(const Shape& given, const Genes& genes, const DrawTarget& target, double* x, double* p) {
   const Shape shape = genes.pose == Genes::kDyadic ? InShort(given) : given;
-  double unit = shape.unit;
-  for (std::size_t i = 0; i < target.parameters.size(); ++i) {
-    const Parameter& parameter = target.parameters[i];
-    double power = 1;
-    for (int k = 0; k < std::abs(parameter.length_power); ++k) power *= shape.unit;
-    if (parameter.length_power < 0) power = 1 / power;
-    p[i] = (parameter.name == "eps" ? shape.eps : parameter.value) * power;
-    // Where a parameter cannot be said in these units, the configuration stays in its own.
-    if (parameter.length_power > 1 && !std::isnormal(p[i])) unit = 1;
-  }
-  if (unit != shape.unit) {
-    for (std::size_t i = 0; i < target.parameters.size(); ++i) {
-      p[i] = target.parameters[i].name == "eps" ? shape.eps : target.parameters[i].value;
-    }
-  }
+  // Where a parameter cannot be said in such units, the configuration stays in its own.
+  const double unit = ParametersIn(shape.unit, shape, target, p) ? shape.unit : 1;
+  if (unit != shape.unit) ParametersIn(unit, shape, target, p);
   const auto& u = genes.u;
   const std::array<double, 4> turn = {NormalQuantile(u[8]), NormalQuantile(u[9]),
                                       NormalQuantile(u[10]), NormalQuantile(u[11])};

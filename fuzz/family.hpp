@@ -24,6 +24,9 @@ struct Genes {
     kTurned,  // turned at random, which rounds them all
   } pose;
   std::array<double, 12> u;  // in (0,1): the rest of the shape
+
+  // For what delta divides.
+  double PositiveDelta() const { return delta > 0 ? delta : 1e-16; }
 };
 
 // Log-uniform delta, but 0 in one of 17; or, of one decade, 10^-(decade+1) to 10^-decade (16: 0).

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/core/vec.hpp"
+#include "kernels/stencils/edge_edge.hpp"
+#include "kernels/stencils/vertex_face.hpp"
 
 namespace definite {
 
@@ -46,30 +47,36 @@ void Place(const Point& a, const Point& b, const Point& between, Primitives& pri
   primitives.foot[1] = Dot(Cross(n, a), between) / area;
 }
 
+// In units of a power of two near the longest component between vertices: products neither over-
+// nor underflow, and nothing is rounded.
+template <int kDofs>
+Vec<double, kDofs> InOwnUnit(const double* x) {
+  double longest = 0;
+  for (int i = 3; i < kDofs; ++i) longest = std::max(longest, std::abs(x[i] - x[i % 3]));
+  const int exponent = longest > 0 ? std::ilogb(longest) : 0;
+  Vec<double, kDofs> scaled;
+  for (int i = 0; i < kDofs; ++i) scaled[i] = std::ldexp(x[i], -exponent);
+  return scaled;
+}
+
 Primitives PrimitivesOf(std::string_view stencil, const double* x) {
-  const int vertices = stencil == "vertex_edge" ? 3 : 4;
-  // In units of the longest component between vertices: products neither over- nor underflow.
-  double unit = 0;
-  for (int i = 3; i < 3 * vertices; ++i) unit = std::max(unit, std::abs(x[i] - x[i % 3]));
-  if (unit == 0) unit = 1;
-  const auto from = [&](int i, int j) {
-    Point edge;
-    for (int k = 0; k < 3; ++k) edge[k] = (x[3 * j + k] - x[3 * i + k]) / unit;
-    return edge;
-  };
   Primitives primitives = {};
-  if (stencil == "vertex_face") {
-    primitives.edges = {from(2, 1), from(2, 3), from(1, 3)};
+  if (stencil == VertexFace::kName) {
+    const auto [e0, e1, e2] = VertexFace::EdgesOf(InOwnUnit<12>(x));
+    primitives.edges = {e0, e1, e1 - e0};
     primitives.count = 3;
-    Place(from(2, 1), from(2, 3), from(2, 0), primitives);
+    Place(e0, e1, e2, primitives);
     primitives.foot[2] = 1 - primitives.foot[0] - primitives.foot[1];
-  } else if (stencil == "edge_edge") {
-    primitives.edges = {from(0, 1), from(2, 3)};
+  } else if (stencil == EdgeEdge::kName) {
+    const auto [e0, e1, e2] = EdgeEdge::EdgesOf(InOwnUnit<12>(x));
+    primitives.edges = {e0, e1};
     primitives.count = 2;
-    Place(from(0, 1), from(2, 3), from(0, 2), primitives);
+    Place(e0, e1, e2, primitives);
     primitives.foot[1] *= -1;  // the other line runs towards the foot, not away from it
   } else {
-    const Point edge = from(1, 2), between = from(1, 0);
+    const Vec<double, 9> scaled = InOwnUnit<9>(x);
+    const Point edge = Vertex(scaled, 2) - Vertex(scaled, 1),
+                between = Vertex(scaled, 0) - Vertex(scaled, 1);
     primitives.edges = {edge};
     primitives.count = 1;
     primitives.foot[0] = Dot(edge, between) / Dot(edge, edge);

@@ -1,7 +1,7 @@
 #pragma once
 
 // How near a configuration is to those where the energies of contact lose digits, or their meaning
-// (docs/collision-filters.md, "Near-degenerate pairs").
+// (docs/advice.md, "Nearly degenerate").
 
 #include <array>
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Degeneracy {
 std::span<const Degeneracy> AllDegeneracies();
 
 // Below this delta a configuration counts as degenerate. At an angle of 1e-4 the formulas as
-// printed have lost half their digits, stable ones one in four (tests/degenerate_test.cpp).
+// printed have lost half their digits (tests/degenerate_test.cpp).
 inline constexpr double kDegenerate = 1e-4;
 
 // How many configurations of a family there are, and the nearest to it.

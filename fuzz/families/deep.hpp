@@ -11,7 +11,7 @@ struct Deep {
   static constexpr std::span<const std::string_view> kStencils = kPairs;
 
   static void Deform(const Genes& genes, Shape& shape) {
-    shape.l = -shape.length0 / (genes.delta > 0 ? genes.delta : 1e-16);
+    shape.l = -shape.length0 / genes.PositiveDelta();
   }
 };
 

@@ -11,7 +11,7 @@ struct FarFoot {
   static constexpr std::span<const std::string_view> kStencils = kContacts;
 
   static void Deform(const Genes& genes, Shape& shape) {
-    const double far = 1 / (genes.delta > 0 ? genes.delta : 1e-16);
+    const double far = 1 / genes.PositiveDelta();
     shape.a = genes.negative ? 1 - far : far;
     shape.b = genes.u[10] < 0.5 ? shape.b : -0.7 * far;
   }

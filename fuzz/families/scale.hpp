@@ -6,7 +6,8 @@
 
 namespace definite::fuzz::families {
 
-// Other units of length: down to 1e-320, where lengths are subnormal, or up to 1e292.
+// Other units of length: up to 1e292, or down to where lengths are subnormal and, at the end,
+// vanish.
 struct Scale {
   static constexpr std::string_view kName = "scale";
   static constexpr std::string_view kMeaning = "lengths times its 20th power, or over its 18th";

@@ -11,7 +11,7 @@ struct ShiftFar {
   static constexpr std::span<const std::string_view> kStencils = kEverything;
 
   static void Deform(const Genes& genes, Shape& shape) {
-    const double far = 1 / (genes.delta > 0 ? genes.delta : 1e-16);
+    const double far = 1 / genes.PositiveDelta();
     shape.shift = {far, (genes.u[10] - 0.5) * far, (genes.negative ? -1 : 1) * far};
   }
 };
