@@ -140,14 +140,6 @@ class AsDistribution(Recorded):
         self.assertEqual(done.returncode, 2)
         self.assertIn("contacts.csv: the file is not the one that was read then", done.stderr)
 
-    def test_a_path_with_blanks_is_quoted_where_a_command_is_shown(self):
-        path = self.file("# stencil=edge_edge eps=1\n" + HEAD + CROSSING.format(0.25),
-                         "it's mine.csv")
-        done = run("replay", "--distribution", path, "--index", "0", "--kernel",
-                   EDGES + "/none/f64")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("it's mine.csv", done.stdout)
-
 
 class BadFiles(Recorded):
     GOOD = "# stencil=edge_edge\n" + HEAD + CROSSING.format(0.25)

@@ -13,6 +13,7 @@ import pty
 import re
 import resource
 import select
+import shlex
 import signal
 import stat
 import subprocess
@@ -868,6 +869,23 @@ class BrokenPromises(unittest.TestCase):
             again = run(*command.split(), program=BROKEN_PROGRAM)
             self.assertEqual(again.returncode, 1)
             self.assertIn("psd and is not\n", again.stderr)
+
+    def test_the_line_that_replays_it_quotes_a_path(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "it's mine.csv"
+            path.write_text("# stencil=vertex_face eps=1\n"
+                            "x0,y0,z0,x1,y1,z1,x2,y2,z2,x3,y3,z3\n"
+                            "0.3,0.3,0.1,1,0,0,0,0,0,0,1,0\n")
+            done = run("sweep", "--no-timing", "--distribution", str(path), program=BROKEN_PROGRAM)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            found = re.findall(r"psd and is not:\n  definite (replay .*)\n", done.stderr)
+            self.assertNotEqual(found, [])
+            for command in found:
+                words = shlex.split(command)
+                self.assertIn(str(path), words)
+                again = run(*words, program=BROKEN_PROGRAM)
+                self.assertEqual(again.returncode, 1, again.stderr)
+                self.assertIn("psd and is not\n", again.stderr)
 
     def test_what_a_filter_does_not_promise_exits_0(self):
         none = ENERGY + "/none/f64"
