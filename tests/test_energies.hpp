@@ -14,6 +14,7 @@ struct Triangle2D {
   static constexpr std::string_view kName = "triangle";
   static constexpr std::array<int, 0> kRelabellings{};  // the rest shape tells the vertices apart
   static constexpr int kDimension = 2;
+  static constexpr int kTree[] = {0, 1, 0, 2};
 };
 
 // Co-rotational energy |F - R|^2 + k/2 tr(S - I)^2 of a right isosceles triangle at rest (k = 0:
