@@ -81,8 +81,7 @@ Distribution DistributionOf(const Family& family, std::optional<int> decade,
           [&family](std::string_view stencil) { return family.Has(stencil); },
           [&family, decade](const DrawTarget& target, std::uint64_t seed, std::uint64_t index,
                             double* x, double* p) {
-            Draws draws(StreamId(family.name), seed, index);
-            Make(family, DrawGenes(draws, decade), target, x, p);
+            Make(family, GenesAt(family, decade, seed, index), target, x, p);
           }};
 }
 
@@ -95,12 +94,18 @@ Genes DrawGenes(Draws& draws, std::optional<int> decade) {
   const double decades = decade ? *decade + t : 16 * t;
   const double octaves = decades / 16 * kOctaves, whole = std::floor(octaves);
   genes.delta = std::ldexp(1 / ShortPower(octaves - whole), -static_cast<int>(whole));
-  if (decade ? *decade == 16 : zero < 1. / 17) genes.delta = 0;
+  if (decade ? *decade == kDecades - 1 : zero < 1. / kDecades) genes.delta = 0;
   genes.negative = draws.OpenUniform() < 0.5;
   const double pose = draws.OpenUniform();
   genes.pose = pose < 0.25 ? Genes::kAxes : pose < 0.5 ? Genes::kDyadic : Genes::kTurned;
   for (double& u : genes.u) u = draws.OpenUniform();
   return genes;
+}
+
+Genes GenesAt(const Family& family, std::optional<int> decade, std::uint64_t seed,
+              std::uint64_t index) {
+  Draws draws(StreamId(family.name), seed, index);
+  return DrawGenes(draws, decade);
 }
 
 Shape OrdinaryShape(const Genes& genes) {
@@ -160,7 +165,8 @@ const Distribution* FindFamily(std::string_view name) {
     const std::string_view text = rest.substr(slash + 1);
     int value = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 16) {
+    if (error != std::errc() || end != text.data() + text.size() || value < 0 ||
+        value >= kDecades) {
       return nullptr;
     }
     decade = value;

@@ -29,6 +29,8 @@ struct Genes {
   double PositiveDelta() const { return delta > 0 ? delta : 1e-16; }
 };
 
+inline constexpr int kDecades = 17;  // of delta, the last of them 0
+
 // Log-uniform delta, but 0 in one of 17; or, of one decade, 10^-(decade+1) to 10^-decade (16: 0).
 Genes DrawGenes(Draws& draws, std::optional<int> decade = std::nullopt);
 
@@ -80,6 +82,10 @@ std::span<const Family> AllFamilies();
 // The distribution "fuzz/NAME" of a family, or "fuzz/NAME/DECADE" of one decade of its delta; null
 // if there is no such.
 const Distribution* FindFamily(std::string_view name);
+
+// Those of the distribution "fuzz/NAME", or "fuzz/NAME/DECADE".
+Genes GenesAt(const Family& family, std::optional<int> decade, std::uint64_t seed,
+              std::uint64_t index);
 
 // What genes of a family make.
 void Make(const Family& family, const Genes& genes, const DrawTarget& target, double* x, double* p);

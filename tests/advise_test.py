@@ -213,7 +213,14 @@ class BadFiles(Recorded):
         self.refused(first + '{"x": ' + x + "}\n", ":2: 0 parameters; expected 1", name="c.jsonl")
         self.refused(first + '{"x": ' + x + ', "k": 1}\n', ":2: 'k'; expected the same names",
                      name="c.jsonl")
-        self.refused(first + "[1, 2]\n", ":2: not a JSON object", name="c.jsonl")
+        for line in ("[1, 2]", "3", "null", '{"x": [1]} 2', '{"x": [1]'):
+            self.refused(first + line + "\n", ":2: not a JSON object", name="c.jsonl")
+        for line, wanted in (('{"x": 3}', "x is a number; expected an array"),
+                             ('{"x": [[1]]}', "x is an array; expected a number"),
+                             ('{"eps": true}', "eps is true; expected a number"),
+                             ('{"eps": {"is": 1}}', "eps is an object; expected a number"),
+                             ('{"stencil": 3}', "stencil is a number; expected a name")):
+            self.refused(first + line + "\n", ":2: " + wanted, name="c.jsonl")
 
     def test_a_file_of_two_gigabytes(self):
         path = self.folder / "large.csv"

@@ -89,6 +89,7 @@ void AddDoctor(CLI::App& app, int& exit_code);
 void AddExport(CLI::App& app, int& exit_code);
 void AddReport(CLI::App& app, int& exit_code);
 void AddAdvise(CLI::App& app, int& exit_code);
+void AddFuzz(CLI::App& app, int& exit_code);
 
 // The words of the command line, as given.
 const std::vector<std::string>& CommandWords();

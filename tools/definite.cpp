@@ -79,6 +79,7 @@ int Run(int argc, char** argv) {
   AddExport(app, exit_code);
   AddReport(app, exit_code);
   AddAdvise(app, exit_code);
+  AddFuzz(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version

@@ -1,6 +1,7 @@
 #include "benchmarks/harness/examine.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -106,6 +107,19 @@ struct Examiner::Definitions {
     if (!quad_truth_) quad_truth_.emplace(quad_energy_, x_, p_);
     return *quad_truth_;
   }
+  // The double classification may err beside the border, where the truth is undefined.
+  bool InDomain() {
+    if (!in_domain_) {
+      const std::vector<Quad> x(x_, x_ + row_.dofs), p(p_, p_ + row_.parameters.size());
+      in_domain_ = quad_energy_.in_domain(x.data(), p.data());
+    }
+    return *in_domain_;
+  }
+  // Whether the filter's definition is the Hessian itself, to the digits of float128.
+  bool Keeps(const reference::Filter<Quad>& filter) {
+    const reference::Matrix<Quad>& exact = QuadTruth().Hessian();
+    return NormOf(exact - Of(filter)) <= 1e-25 * NormOf(exact);
+  }
   // How far the input's own digits leave a definition open.
   double Open(const reference::Filter<Quad>& filter) {
     return Around().Change(filter, QuadTruth());
@@ -120,6 +134,7 @@ struct Examiner::Definitions {
   const reference::Energy<double>& energy_;
   const reference::Energy<Quad>& quad_energy_;
   const double *x_, *p_;
+  std::optional<bool> in_domain_;
   std::optional<Neighbours> neighbours_;
   std::optional<reference::Truth<double>> truth_;  // most configurations ask for neither
   std::optional<reference::Truth<Quad>> quad_truth_;
@@ -135,6 +150,7 @@ Examiner::Examiner(const EnergyRow& energy, std::span<const KernelRow* const> ro
       reference_(reference::FindEnergy<double>(energy.name)),
       quad_reference_(reference::FindEnergy<Quad>(energy.name)),
       exact_filter_(reference::FindFilter<Quad>("none")),
+      symmetries_(SymmetriesOf(energy)),
       figures_(rows.size()) {
   if (!exact_ || !nearest_) {
     throw std::runtime_error(energy.name + " lacks the row none/f64 or one of the nearest matrix");
@@ -157,7 +173,16 @@ double Examiner::Bound() const {
 }
 
 double Examiner::Bound(const double* x, const double* p) const {
-  return kRatioBound * energy_->dofs * kUnit / reference_->conditioning(x, p);
+  return kRatioBound * energy_->dofs * kUnit / ConditioningAt(x, p);
+}
+
+double Examiner::ConditioningAt(const double* x, const double* p) const {
+  // Fourth powers of lengths leave the range of doubles where lengths are far from 1.
+  double largest = 0;
+  for (int i = 0; i < energy_->dofs; ++i) largest = std::max(largest, std::abs(x[i]));
+  if (largest > 1e-60 && largest < 1e60) return reference_->conditioning(x, p);
+  const std::vector<Quad> quad_x(x, x + energy_->dofs), quad_p(p, p + energy_->parameters.size());
+  return quad_reference_->conditioning(quad_x.data(), quad_p.data());
 }
 
 void Examiner::Examine(const double* x, const double* p, Depth depth) {
@@ -206,7 +231,7 @@ void Examiner::Examine(const double* x, const double* p, const ExactOutput& exac
   if (!configuration_.active) return;
 
   configuration_.indefinite = !exact.of_h.psd;
-  configuration_.conditioning = reference_->conditioning(x, p);
+  configuration_.conditioning = ConditioningAt(x, p);
   Definitions definitions(*energy_, *reference_, *quad_reference_, x, p);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     // Lanes give the same bits as the scalar row before them, as a rule: no need to look twice.
@@ -214,9 +239,26 @@ void Examiner::Examine(const double* x, const double* p, const ExactOutput& exac
       figures_[r] = figures_[outputs[r].twin];
     } else if (outputs[r].asked) {
       ExamineRow(r, x, p, exact, outputs[r], depth, definitions);
+      if (DiffersFromScalar(r, outputs)) {
+        figures_[r].broken.push_back(Property::kLanesEqualScalar);
+      }
     }
   }
-  if (depth.truth) ExamineEnergy(x, p, definitions);
+  if (depth.truth && definitions.InDomain()) ExamineEnergy(x, p, definitions);
+}
+
+bool Examiner::DiffersFromScalar(std::size_t r, std::span<const RowOutput> outputs) const {
+  const KernelRow& row = *rows_[r];
+  if (row.lanes == 1 || !row.Promises(Property::kLanesEqualScalar)) return false;
+  const auto scalar = std::ranges::find_if(rows_, [&](const KernelRow* other) {
+    return other->filter == row.filter && other->lanes == 1;
+  });
+  if (scalar == rows_.end()) return false;
+  const Packed a = outputs[r].f, b = outputs[static_cast<std::size_t>(scalar - rows_.begin())].f;
+  return !std::ranges::equal(a, b, [](double u, double v) {
+    return std::bit_cast<std::uint64_t>(u) == std::bit_cast<std::uint64_t>(v) ||
+           (std::isnan(u) && std::isnan(v));
+  });
 }
 
 void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const ExactOutput& exact,
@@ -229,6 +271,10 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const
   const auto [norm, to_nearest, to_exact, psd] = output.measures;
   // The norm of finite entries may overflow.
   if (!std::isfinite(norm) && !AllFinite(output.f)) {
+    if (!definitions.InDomain()) {
+      figures.verdict = Verdict::kOutOfDomain;
+      return;
+    }
     figures.verdict = Verdict::kNonFinite;
     breaks(Property::kFinite);
     return;
@@ -245,6 +291,11 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const
     // Written so that a NaN is doubted too.
     const bool ill_conditioned = !(kUnit * h_norm <= kIllConditioned * exact.nearest_norm);
     if (depth.truth || ill_conditioned || !(error <= kDoubt * bound)) {
+      if (!definitions.InDomain()) {
+        figures = {};
+        figures.verdict = Verdict::kOutOfDomain;
+        return;
+      }
       ExamineTruth(r, output.f, definitions);
       error = *figures.rounding * energy_->dofs * kUnit;
       // What is open only for a row that promises accuracy: it takes long.
@@ -264,25 +315,15 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const
   }
   if (norm == 0 && h_norm != 0) figures.verdict = Verdict::kSilentZero;
   if (depth.spectrum) {
-    ExamineSpectrum(r, x, p, exact, output);
-    const double bound = Bound() * (h_norm + norm);
-    const double shortfall = *figures.majorises * h_norm, spread = *figures.relabelling * norm;
-    if (row.Promises(Property::kMajorises) && shortfall > bound &&
-        shortfall >
-            bound + definitions.Open(*exact_filter_) + definitions.Open(*quad_filters_[r])) {
-      breaks(Property::kMajorises);
-    }
-    if (row.Promises(Property::kRelabelling) && spread > 2 * bound &&
-        spread > bound + Bound(relabelled_.data(), p) * (h_norm + norm) +
-                     definitions.Open(*quad_filters_[r]) + OpenElsewhere(*quad_filters_[r], p)) {
-      breaks(Property::kRelabelling);
-    }
+    ExamineSpectrum(r, exact, output, definitions);
+    ExamineSymmetries(r, x, p, exact, output, definitions);
   }
 }
 
-double Examiner::OpenElsewhere(const reference::Filter<Quad>& filter, const double* p) const {
-  reference::Truth<Quad> truth(*quad_reference_, relabelled_.data(), p);
-  return Neighbours(*energy_, *quad_reference_, relabelled_.data(), p).Change(filter, truth);
+double Examiner::OpenAt(const reference::Filter<Quad>& filter, const double* x,
+                        const double* p) const {
+  reference::Truth<Quad> truth(*quad_reference_, x, p);
+  return Neighbours(*energy_, *quad_reference_, x, p).Change(filter, truth);
 }
 
 bool Examiner::IsOpen(std::size_t r, Packed f, Definitions& definitions) const {
@@ -305,44 +346,65 @@ void Examiner::ExamineTruth(std::size_t r, Packed f, Definitions& definitions) {
   figures.excess = Excess(DistanceTo(f, exact), NormOf(exact - nearest));
 }
 
-void Examiner::ExamineSpectrum(std::size_t r, const double* x, const double* p,
-                               const ExactOutput& exact, const RowOutput& output) {
+void Examiner::ExamineSpectrum(std::size_t r, const ExactOutput& exact, const RowOutput& output,
+                               Definitions& definitions) {
+  const KernelRow& row = *rows_[r];
   RowFigures& figures = figures_[r];
   const Packed f = output.f;
   const double norm = output.measures.norm, h_norm = exact.of_h.norm;
+  const double bound = Bound() * (h_norm + norm);
   const auto below_zero = [](Packed a) { return std::max(0.0, -Eigenvalues(a).front()); };
   figures.psd_defect = norm == 0 ? 0 : below_zero(f) / (energy_->dofs * kUnit * norm);
-  figures.majorises = h_norm == 0 ? 0 : below_zero(Difference(f, exact.h)) / h_norm;
-
-  const int n = energy_->dofs, dimension = energy_->dimension, vertices = n / dimension;
-  const auto at = [n](int i, int j) {
-    if (i > j) std::swap(i, j);
-    return static_cast<std::size_t>(i * n - i * (i - 1) / 2 + j - i);
+  const double shortfall = below_zero(Difference(f, exact.h));
+  figures.majorises = h_norm == 0 ? 0 : shortfall / h_norm;
+  // H and F, and each with what the digits of the input leave open.
+  const auto exceeds = [&](double error) {
+    return !(error <= bound) && definitions.InDomain() &&
+           !(error <=
+             bound + definitions.Open(*exact_filter_) + definitions.Open(*quad_filters_[r]));
   };
-  double spread = 0;
-  std::vector<double> relabelled_x(static_cast<std::size_t>(n)), relabelled(f.size());
-  std::vector<double> back(f.size());
-  for (std::size_t first = 0; first < energy_->relabellings.size();
-       first += static_cast<std::size_t>(vertices)) {
-    const auto old_coordinate = [&](int i) {
-      return energy_->relabellings[first + static_cast<std::size_t>(i / dimension)] * dimension +
-             i % dimension;
-    };
-    for (int i = 0; i < n; ++i) {
-      relabelled_x[static_cast<std::size_t>(i)] = x[old_coordinate(i)];
-    }
-    RunOne(*rows_[r], relabelled_x.data(), p, relabelled.data());
-    for (int i = 0; i < n; ++i) {
-      for (int j = i; j < n; ++j) {
-        back[at(old_coordinate(i), old_coordinate(j))] = relabelled[at(i, j)];
-      }
-    }
-    if (const double distance = FrobeniusDistance(back, f); !(distance <= spread)) {
-      spread = std::isnan(distance) ? std::numeric_limits<double>::infinity() : distance;
-      relabelled_ = relabelled_x;
-    }
+  if (row.Promises(Property::kMajorises) && exceeds(shortfall)) {
+    figures.broken.push_back(Property::kMajorises);
   }
-  figures.relabelling = spread == 0 ? 0 : spread / norm;
+  // In double a Hessian counts as PSD with negative eigenvalues of its rounding.
+  if (row.Promises(Property::kKeepsPsd) && exact.of_h.psd && exceeds(output.measures.to_exact) &&
+      definitions.Keeps(*quad_filters_[r])) {
+    figures.broken.push_back(Property::kKeepsPsd);
+  }
+  if (row.Promises(Property::kTranslation) && exceeds(OnTranslations(*energy_, f))) {
+    figures.broken.push_back(Property::kTranslation);
+  }
+}
+
+void Examiner::ExamineSymmetries(std::size_t r, const double* x, const double* p,
+                                 const ExactOutput& exact, const RowOutput& output,
+                                 Definitions& definitions) {
+  const KernelRow& row = *rows_[r];
+  RowFigures& figures = figures_[r];
+  const double norm = output.measures.norm, h_norm = exact.of_h.norm;
+  const reference::Filter<Quad>& filter = *quad_filters_[r];
+  double relabelling = 0;
+  std::vector<double> new_x, new_p, result(output.f.size());
+  for (const Symmetry& symmetry : symmetries_) {
+    const bool is_relabelling = symmetry.property == Property::kRelabelling;
+    if (!is_relabelling && !row.Promises(symmetry.property)) continue;
+    if (!symmetry.Apply(*energy_, x, p, new_x, new_p)) continue;
+    RunOne(row, new_x.data(), new_p.data(), result.data());
+    double spread = FrobeniusDistance(result, symmetry.Expected(output.f));
+    if (std::isnan(spread)) spread = std::numeric_limits<double>::infinity();
+    if (is_relabelling) relabelling = std::max(relabelling, spread);
+    const double bound = Bound() * (h_norm + norm);
+    if (spread <= 2 * bound || !row.Promises(symmetry.property) || !definitions.InDomain())
+      continue;
+    if (std::ranges::find(figures.broken, symmetry.property) != figures.broken.end()) continue;
+    // Other numbers may be worse conditioned; turned or scaled, they are as good.
+    const double here = bound + definitions.Open(filter);
+    const double there =
+        is_relabelling ? Bound(new_x.data(), p) * (h_norm + norm) + OpenAt(filter, new_x.data(), p)
+                       : here;
+    if (!(spread <= here + there)) figures.broken.push_back(symmetry.property);
+  }
+  figures.relabelling = relabelling == 0 ? 0 : relabelling / norm;
 }
 
 void Examiner::ExamineEnergy(const double* x, const double* p, Definitions& definitions) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "benchmarks/harness/figures.hpp"
+#include "benchmarks/harness/symmetries.hpp"
 #include "kernels/kernel.hpp"
 #include "reference/oracle.hpp"
 
@@ -33,7 +34,7 @@ inline constexpr std::array<std::string_view, kVerdictCount> kVerdictNames = {
 // What to look at besides distance, excess, finite, PSD yes or no, which cost microseconds.
 struct Depth {
   bool definition;  // the filter's definition in double; where in doubt, in float128
-  bool spectrum;    // eigenvalues, majorisation, relabelling
+  bool spectrum;    // eigenvalues, majorisation, translations, symmetries
   bool truth;       // everything in float128: milliseconds
 
   static const Depth kCheap, kDefinition, kSpectral, kTruth;  // each includes those before it
@@ -111,16 +112,22 @@ class Examiner {
 
   void ExamineRow(std::size_t r, const double* x, const double* p, const ExactOutput& exact,
                   const RowOutput& output, Depth depth, Definitions& definitions);
-  void ExamineSpectrum(std::size_t r, const double* x, const double* p, const ExactOutput& exact,
-                       const RowOutput& output);
+  void ExamineSpectrum(std::size_t r, const ExactOutput& exact, const RowOutput& output,
+                       Definitions& definitions);
+  void ExamineSymmetries(std::size_t r, const double* x, const double* p, const ExactOutput& exact,
+                         const RowOutput& output, Definitions& definitions);
   void ExamineTruth(std::size_t r, Packed f, Definitions& definitions);
+  // Whether the row of lanes has other bits than the scalar one, if that is among the rows.
+  bool DiffersFromScalar(std::size_t r, std::span<const RowOutput> outputs) const;
   // Whether the digits of the input leave room for f beside the row's definition.
   bool IsOpen(std::size_t r, Packed f, Definitions& definitions) const;
-  // How far the digits of the relabelled pair that differs most leave a definition open.
-  double OpenElsewhere(const reference::Filter<reference::Quad>& filter, const double* p) const;
+  // How far the digits of another configuration leave a definition open.
+  double OpenAt(const reference::Filter<reference::Quad>& filter, const double* x,
+                const double* p) const;
   void ExamineEnergy(const double* x, const double* p, Definitions& definitions);
   double Bound() const;  // of an error relative to |F|, by the conditioning
   double Bound(const double* x, const double* p) const;
+  double ConditioningAt(const double* x, const double* p) const;
 
   const EnergyRow* energy_;
   std::vector<const KernelRow*> rows_;
@@ -129,11 +136,11 @@ class Examiner {
   const reference::Energy<double>* reference_;
   const reference::Energy<reference::Quad>* quad_reference_;
   const reference::Filter<reference::Quad>* exact_filter_;
+  std::vector<Symmetry> symmetries_;
   std::vector<const reference::Filter<double>*> filters_;
   std::vector<const reference::Filter<reference::Quad>*> quad_filters_;
   ConfigurationFigures configuration_;
   std::vector<RowFigures> figures_;
-  std::vector<double> relabelled_;  // the numbering that changed a row's result most
 };
 
 }  // namespace definite

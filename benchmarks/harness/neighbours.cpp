@@ -63,6 +63,10 @@ double Neighbours::Change(const reference::Filter<Quad>& filter, Truth<Quad>& tr
     for (Truth<Quad>& neighbour : truths_) {
       at->second = std::max(at->second, Distance(filter.define(neighbour), definition));
     }
+    // Not one digit is left: a step farther, and it may be of any size.
+    if (at->second >= static_cast<double>(reference::FrobeniusNorm(definition))) {
+      at->second = std::numeric_limits<double>::infinity();
+    }
   }
   return at->second;
 }

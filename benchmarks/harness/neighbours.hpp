@@ -21,7 +21,7 @@ class Neighbours {
              const double* x, const double* p);
 
   // The largest change of a filter's definition from the truth to a neighbour, in the Frobenius
-  // norm.
+  // norm; infinite if that is as large as the definition itself.
   double Change(const reference::Filter<reference::Quad>& filter,
                 reference::Truth<reference::Quad>& truth);
   // The same of the value and of the gradient (Euclidean).

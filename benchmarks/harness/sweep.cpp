@@ -163,6 +163,7 @@ void RunCheckedPasses(std::span<SweepResult> results, Progress& progress,
       }
       if (!rest.empty()) result.partial = true;
     }
+    if (!result.plan.worst_cases) continue;
     for (EnergyResult& energy : result.energies) ExamineWorstCases(result.plan, energy);
   }
 }

@@ -38,6 +38,7 @@ struct SweepPlan {
   Shard shard;  // only these of the count
   int threads = 1;
   bool timing = true, checks = true;
+  bool worst_cases = true;  // looked at again in float128
 };
 
 // Seconds per configuration of one row, a number for each round: of all configurations, and of

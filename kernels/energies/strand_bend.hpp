@@ -62,17 +62,19 @@ struct StrandBend {
     if constexpr (kPart == Part::kCurvature) {
       return Modes<T, 9, 1>{{mu}, {PullBack(f, f.b0, T(-1.0) * f.b1)}};
     } else {
-      const T f1 = Slope(f, p), half = T(0.5), none = T(0.0);
+      // In units of mu, which may be far from 1: eigenvalues of a block square its entries.
+      const T slope = Select(f.outside, T(0.0), p[1] - f.omega), f1 = mu * slope;
+      const T half = T(0.5), none = T(0.0);
       const Vec3<T> minus_t1 = T(-1.0) * f.t1, minus_b1 = T(-1.0) * f.b1;
       // On ((t0; t1), (b0; -b1)) / sqrt 2 and ((t0; -t1), (b0; b1)) / sqrt 2; the halves below are
       // the squares of 1 / sqrt 2.
       const Vec<T, 9> u0 = PullBack(f, f.t0, f.t1), w0 = PullBack(f, f.b0, minus_b1);
       const Vec<T, 9> u1 = PullBack(f, f.t0, minus_t1), w1 = PullBack(f, f.b0, f.b1);
-      const auto bend = SymmetricEigen2(none, -f1, mu + mu);
+      const auto bend = SymmetricEigen2(none, -slope, T(2.0));
       Modes<T, 9, 6> modes;
-      modes.lambda[0] = half * bend.first;
+      modes.lambda[0] = half * mu * bend.first;
       modes.v[0] = bend.c * u0 + bend.s * w0;
-      modes.lambda[1] = half * bend.second;
+      modes.lambda[1] = half * mu * bend.second;
       modes.v[1] = (-bend.s) * u0 + bend.c * w0;
       // [[0, -f1], [-f1, 0]]: its eigenvectors are the diagonals.
       const T quarter = T(0.25);

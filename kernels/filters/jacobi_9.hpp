@@ -12,6 +12,8 @@ struct Jacobi9 {
   static constexpr std::string_view kSource = "Golub & Van Loan, section 8.5";
   static constexpr Exemption kExempt[] = {
       {Property::kAccurate, "its error is u |H| of the frame, however small the result"},
+      {Property::kMajorises, "the same error, which a short edge magnifies beyond u |H|"},
+      {Property::kRigidMotion, "the same error, which a short edge magnifies beyond u |H|"},
       {Property::kRelabelling,
        "the paper's frame starts at e0, and the frame map is not orthogonal"},
   };

@@ -16,6 +16,8 @@ struct NumericFrame {
   static constexpr Exemption kExempt[] = {
       {Property::kAccurate, "its error is u |H| of the frame, however small the result"},
       {Property::kPsd, "the same error leaves eigenvalues of about -u |H|"},
+      {Property::kMajorises, "the same error, which a short edge magnifies beyond u |H|"},
+      {Property::kRigidMotion, "the same error, which a short edge magnifies beyond u |H|"},
       {Property::kRelabelling,
        "the paper's frame starts at e0, and the frame map is not orthogonal"},
   };

@@ -14,6 +14,8 @@ struct Ql9 {
   static constexpr bool kInPairs = true;
   static constexpr Exemption kExempt[] = {
       {Property::kAccurate, "its error is u |H| of the frame, however small the result"},
+      {Property::kMajorises, "the same error, which a short edge magnifies beyond u |H|"},
+      {Property::kRigidMotion, "the same error, which a short edge magnifies beyond u |H|"},
       {Property::kRelabelling,
        "the paper's frame starts at e0, and the frame map is not orthogonal"},
   };

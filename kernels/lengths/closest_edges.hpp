@@ -10,6 +10,8 @@
 // Domain: both edges above kLeastEdge, and the distance above kLeastLength. Parallel edges are
 // in it: their closest points are taken at an endpoint.
 
+#include <limits>
+
 #include "kernels/lengths/unsigned_plane.hpp"
 #include "kernels/stencils/edge_edge.hpp"
 
@@ -67,27 +69,28 @@ struct ClosestEdges {
     Vec3<T> between;  // from edge A to edge B
     T squared;
     T free;  // 1 if the point on the other edge is inside it
+    T back;  // how much nearer the own edge would come, beyond its vertex: 0 if not at all
   };
 
-  // Vertex at parameter a of A against B.
+  // Vertex at parameter a of A, `from` it to the start of B.
   template <class T>
-  static DEFINITE_INLINE Candidate<T> AgainstB(const Edges<T>& e, const Vec3<T>& from, const T& a,
-                                               const T& inverse_bb) {
-    const T b = -(Dot(from, e.e1) * inverse_bb);
-    Candidate<T> c = Clamp(b, a);
-    c.between = from + c.b * e.e1;
-    c.squared = Dot(c.between, c.between);
+  static DEFINITE_INLINE Candidate<T> AgainstB(const Edges<T>& e, const Vec3<T>& from, bool at_end,
+                                               const T& inverse_a, const T& inverse_b) {
+    const T b = -(Dot(from, e.e1) * inverse_b * inverse_b);
+    Candidate<T> c = Clamp(b, T(at_end ? 1.0 : 0.0));
+    SetBetween(from, inverse_b * e.e1, c.b * e.e1, c);
+    SetBack(Dot(c.between, inverse_a * e.e0), at_end, c);
     return c;
   }
-  // Vertex at parameter b of B against A.
+  // Vertex at parameter b of B, `from` the start of A to it.
   template <class T>
-  static DEFINITE_INLINE Candidate<T> AgainstA(const Edges<T>& e, const Vec3<T>& from, const T& b,
-                                               const T& inverse_aa) {
-    const T a = Dot(from, e.e0) * inverse_aa;
-    Candidate<T> c = Clamp(a, b);
+  static DEFINITE_INLINE Candidate<T> AgainstA(const Edges<T>& e, const Vec3<T>& from, bool at_end,
+                                               const T& inverse_a, const T& inverse_b) {
+    const T a = Dot(from, e.e0) * inverse_a * inverse_a;
+    Candidate<T> c = Clamp(a, T(at_end ? 1.0 : 0.0));
     std::swap(c.a, c.b);
-    c.between = from - c.a * e.e0;
-    c.squared = Dot(c.between, c.between);
+    SetBetween(from, inverse_a * e.e0, -c.a * e.e0, c);
+    SetBack(-Dot(c.between, inverse_b * e.e1), at_end, c);
     return c;
   }
   // The parameter clamped to [0, 1], in b, and the vertex's own in a.
@@ -99,6 +102,19 @@ struct ClosestEdges {
     c.b = Select(below, T(0.0), Select(above, T(1.0), parameter));
     c.free = Select(below | above, T(0.0), T(1.0));
     return c;
+  }
+  // To a point inside the edge along t the way is across it: t x from x t keeps the right angle,
+  // from + step, a difference of near ones, would lose it.
+  template <class T>
+  static DEFINITE_INLINE void SetBetween(const Vec3<T>& from, const Vec3<T>& t, const Vec3<T>& step,
+                                         Candidate<T>& c) {
+    c.between = SelectAll(c.free > T(0.0), Cross(Cross(t, from), t), from + step);
+    c.squared = Dot(c.between, c.between);
+  }
+  // Along the own edge the distance falls by `falls`: there is nothing beyond its vertex.
+  template <class T>
+  static DEFINITE_INLINE void SetBack(const T& falls, bool at_end, Candidate<T>& c) {
+    c.back = Max(at_end ? -falls : falls, T(0.0));
   }
 
   // Replaces the frame, where `endpoint`, by that of the nearest vertex.
@@ -112,42 +128,41 @@ struct ClosestEdges {
     aa = Select(no_edge, T(1.0), aa);
     bb = Select(no_edge, T(1.0), bb);
     const T inverse_a = T(1.0) / Sqrt(aa), inverse_b = T(1.0) / Sqrt(bb);
-    const T inverse_aa = inverse_a * inverse_a, inverse_bb = inverse_b * inverse_b;
-    const Candidate<T> candidates[4] = {
-        AgainstB(edges, e2, T(0.0), inverse_bb), AgainstB(edges, e2 - e0, T(1.0), inverse_bb),
-        AgainstA(edges, e2, T(0.0), inverse_aa), AgainstA(edges, e2 + e1, T(1.0), inverse_aa)};
+    const Candidate<T> candidates[4] = {AgainstB(edges, e2, false, inverse_a, inverse_b),
+                                        AgainstB(edges, e2 - e0, true, inverse_a, inverse_b),
+                                        AgainstA(edges, e2, false, inverse_a, inverse_b),
+                                        AgainstA(edges, e2 + e1, true, inverse_a, inverse_b)};
     Candidate<T> best = candidates[0];
     T on_a = T(0.0);  // 1 if the free edge is A
 #pragma GCC unroll 3
     for (int i = 1; i < 4; ++i) {
+      // Distances differ in their last digits only where the edges are far apart; that the own edge
+      // comes no nearer beyond its vertex tells the nearest candidate from the others in their
+      // first. Of several, parallel edges have them, the nearest.
       const Candidate<T>& c = candidates[i];
-      const auto nearer = c.squared < best.squared;
+      const T squared =
+          Select(c.back > best.back, T(std::numeric_limits<double>::infinity()), c.squared);
+      const auto nearer = (c.back < best.back) | (squared < best.squared);
       best.a = Select(nearer, c.a, best.a);
       best.b = Select(nearer, c.b, best.b);
       best.squared = Select(nearer, c.squared, best.squared);
       best.free = Select(nearer, c.free, best.free);
+      best.back = Select(nearer, c.back, best.back);
       on_a = Select(nearer, T(i < 2 ? 0.0 : 1.0), on_a);
-#pragma GCC unroll 3
-      for (int k = 0; k < 3; ++k) {
-        best.between[k] = Select(nearer, c.between[k], best.between[k]);
-      }
+      best.between = SelectAll(nearer, c.between, best.between);
     }
     const auto touching = best.squared <= T(kLeastLength * kLeastLength);
     f.outside = no_edge | touching;
-    const T squared = Select(f.outside, T(1.0), best.squared);
-    const T u = Sqrt(squared);
+    const T u = Sqrt(Select(f.outside, T(1.0), best.squared));
     const Vec3<T> n = (s / u) * best.between;
 
     const auto is_free = best.free > T(0.0), along_a = on_a > T(0.0);
     // Along the free edge, else along any axis; made normal to n.
-    const Vec3<T> axis = AxisOff(n);
-    Vec3<T> d;
-#pragma GCC unroll 3
-    for (int k = 0; k < 3; ++k) {
-      d[k] = Select(is_free, Select(along_a, inverse_a * e0[k], inverse_b * e1[k]), axis[k]);
-    }
+    const Vec3<T> t = SelectAll(along_a, inverse_a * e0, inverse_b * e1);
+    Vec3<T> d = SelectAll(is_free, t, AxisOff(n));
     d = d - Dot(d, n) * n;
-    const Vec3<T> t0 = (T(1.0) / Sqrt(Dot(d, d))) * d;
+    const T squared_d = Dot(d, d);
+    const Vec3<T> t0 = (T(1.0) / Sqrt(Select(f.outside, T(1.0), squared_d))) * d;
     const Vec3<T> t1 = Cross(n, t0);
     const Vec3<T> row = {Select(along_a, T(1.0), T(0.0)), Select(along_a, T(0.0), T(1.0)), T(0.0)};
     const Vec3<T> w = {-best.a, best.b, T(1.0)};

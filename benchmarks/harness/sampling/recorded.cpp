@@ -258,38 +258,114 @@ class JsonReader : public Reader {
   }
 
   void ReadConfiguration(std::string_view text, double* x, double* p) const override {
-    const Json json = ObjectOf(text);
-    std::size_t parameters = 0;
-    for (const auto& [name, value] : json.items()) {
-      if (name == "stencil") {
-        CheckStencil(StencilOf(json));
-      } else if (name != "x") {
-        const auto at = std::find(Names().begin() + std::ssize(Shared()), Names().end(), name);
-        if (at == Names().end()) {
-          throw LineError(fmt::format("'{}'; expected the same names as in the lines above", name));
-        }
-        p[at - Names().begin()] = NumberOf(value, name);
-        ++parameters;
-      }
-    }
-    if (const std::size_t expected = Names().size() - Shared().size(); parameters != expected) {
-      throw LineError(
-          fmt::format("{} parameters; expected {}, as in the lines above", parameters, expected));
-    }
-    const auto numbers = json.find("x");
-    if (numbers == json.end() || !numbers->is_array() ||
-        numbers->size() != static_cast<std::size_t>(Dofs())) {
-      throw LineError(fmt::format("x has {} numbers; expected {} for a {}",
-                                  numbers == json.end() ? 0 : numbers->size(), Dofs(), Stencil()));
-    }
-    for (const Json& number : *numbers) *x++ = NumberOf(number, "x");
+    Fields fields(*this, x, p);
+    if (!Json::sax_parse(text, &fields)) throw NotAnObject();
+    fields.CheckNumbers();
   }
 
  private:
+  // Takes the numbers of a line as they are read: a document of each would take thrice the time.
+  class Fields : public nlohmann::json_sax<Json> {
+   public:
+    Fields(const JsonReader& reader, double* x, double* p) : reader_(&reader), x_(x), p_(p) {}
+
+    void CheckNumbers() const {
+      const auto expected = static_cast<std::size_t>(reader_->Dofs());
+      if (coordinates_ != expected) {
+        throw LineError(fmt::format("x has {} numbers; expected {} for a {}", coordinates_,
+                                    expected, reader_->Stencil()));
+      }
+      const std::size_t parameters = reader_->Names().size() - reader_->Shared().size();
+      if (parameters_ != parameters) {
+        throw LineError(fmt::format("{} parameters; expected {}, as in the lines above",
+                                    parameters_, parameters));
+      }
+    }
+
+    bool key(string_t& name) override {
+      name_ = name;
+      if (name == "x") coordinates_ = 0;
+      if (name == "stencil" || name == "x") return true;
+      const auto& names = reader_->Names();
+      const auto at = std::find(names.begin() + std::ssize(reader_->Shared()), names.end(), name);
+      if (at == names.end()) {
+        throw LineError(fmt::format("'{}'; expected the same names as in the lines above", name));
+      }
+      place_ = at - names.begin();
+      return true;
+    }
+    bool number_integer(number_integer_t value) override {
+      return Take(static_cast<double>(value));
+    }
+    bool number_unsigned(number_unsigned_t value) override {
+      return Take(static_cast<double>(value));
+    }
+    bool number_float(number_float_t value, const string_t&) override { return Take(value); }
+    bool string(string_t& value) override {
+      if (name_ != "stencil") throw NotANumber(fmt::format("\"{}\"", value));
+      reader_->CheckStencil(value);
+      return true;
+    }
+    bool start_array(std::size_t) override {
+      if (name_ != "x" || in_array_) throw NotANumber("an array");
+      return in_array_ = true;
+    }
+    bool end_array() override {
+      in_array_ = false;
+      return true;
+    }
+    bool start_object(std::size_t) override {
+      if (!name_.empty()) throw NotANumber("an object");
+      return is_object_ = true;
+    }
+    bool end_object() override { return true; }
+    bool null() override { throw NotANumber("null"); }
+    bool boolean(bool value) override { throw NotANumber(value ? "true" : "false"); }
+    bool binary(binary_t&) override { return false; }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+      return false;
+    }
+
+   private:
+    LineError NotANumber(std::string_view what) const {
+      if (!is_object_) return NotAnObject();
+      const bool is_list = name_ == "x" && !in_array_;
+      return LineError(fmt::format("{} is {}; expected {}", name_, what,
+                                   name_ == "stencil" ? "a name"
+                                   : is_list          ? "an array"
+                                                      : "a number"));
+    }
+
+    bool Take(double value) {
+      if (!is_object_ || name_ == "stencil" || (name_ == "x") != in_array_) {
+        throw NotANumber("a number");
+      }
+      if (name_ != "x") {
+        p_[place_] = value;
+        ++parameters_;
+      } else {
+        if (coordinates_ < static_cast<std::size_t>(reader_->Dofs())) x_[coordinates_] = value;
+        ++coordinates_;
+      }
+      return true;
+    }
+
+    const JsonReader* reader_;
+    double *x_, *p_;
+    std::string name_;
+    std::ptrdiff_t place_ = 0;
+    bool is_object_ = false, in_array_ = false;
+    std::size_t coordinates_ = 0, parameters_ = 0;
+  };
+
   static Json ObjectOf(std::string_view text) {
     Json json = Json::parse(text, nullptr, false);
     if (json.is_object()) return json;
-    throw LineError("not a JSON object; expected one in each line, with finite numbers");
+    throw NotAnObject();
+  }
+
+  static LineError NotAnObject() {
+    return LineError("not a JSON object; expected one in each line, with finite numbers");
   }
 
   static double NumberOf(const Json& value, std::string_view name) {
