@@ -58,18 +58,19 @@ Shape OrdinaryShape(const Genes& genes);
 // The configuration: dofs numbers x and a number p for each parameter.
 void Pose(const Shape& shape, const Genes& genes, const DrawTarget& target, double* x, double* p);
 
-// What a file in families/ defines: a name, what delta is, the stencils it has a meaning for, and
-// what it makes of an ordinary shape.
+// What a file in families/ defines: a name, what delta is, what to do where it is small, the
+// stencils it has a meaning for, and what it makes of an ordinary shape.
 template <class F>
 concept FamilyType = requires(const Genes& genes, Shape& shape) {
   { F::kName } -> std::convertible_to<std::string_view>;
   { F::kMeaning } -> std::convertible_to<std::string_view>;
+  { F::kRemedy } -> std::convertible_to<std::string_view>;
   { F::kStencils } -> std::convertible_to<std::span<const std::string_view>>;
   F::Deform(genes, shape);
 };
 
 struct Family {
-  std::string_view name, meaning;
+  std::string_view name, meaning, remedy;
   std::span<const std::string_view> stencils;
   void (*deform)(const Genes& genes, Shape& shape);
 
@@ -92,7 +93,7 @@ void Make(const Family& family, const Genes& genes, const DrawTarget& target, do
 
 template <FamilyType F>
 constexpr Family MakeFamily() {
-  return {F::kName, F::kMeaning, F::kStencils, F::Deform};
+  return {F::kName, F::kMeaning, F::kRemedy, F::kStencils, F::Deform};
 }
 
 inline constexpr std::string_view kFaces[] = {"vertex_face"}, kEdgePairs[] = {"edge_edge"},

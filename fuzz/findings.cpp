@@ -30,15 +30,6 @@ Example ExampleOf(const EnergyRow& energy, const Distribution& distribution, std
           {batch.P(0), batch.P(0) + energy.parameters.size()}};
 }
 
-// What genes make, on the side where the energy is defined.
-Example ExampleOf(const EnergyRow& energy, const Family& family, const Genes& genes) {
-  Distribution one;
-  one.draw = [&](const DrawTarget& target, std::uint64_t, std::uint64_t, double* x, double* p) {
-    Make(family, genes, target, x, p);
-  };
-  return ExampleOf(energy, one, 0, 0);
-}
-
 // With that many bits after the point.
 double Rounded(double value, int bits) {
   return std::ldexp(std::nearbyint(std::ldexp(value, bits)), -bits);
@@ -108,6 +99,14 @@ std::uint64_t FirstInconsistent(const Plan& plan, const Cell& cell, const Kernel
 }
 
 }  // namespace
+
+Example ExampleOf(const EnergyRow& energy, const Family& family, const Genes& genes) {
+  Distribution one;
+  one.draw = [&](const DrawTarget& target, std::uint64_t, std::uint64_t, double* x, double* p) {
+    Make(family, genes, target, x, p);
+  };
+  return ExampleOf(energy, one, 0, 0);
+}
 
 std::vector<Finding> FindingsOf(const Plan& plan, const std::vector<Json>& cells) {
   std::vector<Finding> findings;
@@ -196,8 +195,13 @@ Example Shrunk(const Finding& finding) {
   return example;
 }
 
-std::string CorpusText(const Finding& finding, const Example& example) {
-  const EnergyRow& energy = *finding.cell.energy;
+std::string FuzzCommand(const Finding& finding) {
+  return fmt::format("definite fuzz --kernels {} --families {} --seed {}",
+                     finding.rows.front()->name, finding.cell.family->name, finding.cell.seed);
+}
+
+std::string CorpusText(const std::string& command, const std::string& what, const EnergyRow& energy,
+                       const Example& example) {
   std::string settings = fmt::format("stencil={}", energy.stencil);
   for (std::size_t j = 0; j < energy.parameters.size(); ++j) {
     settings += fmt::format(" {}={}", energy.parameters[j].name, HexFloat(example.p[j]));
@@ -207,10 +211,8 @@ std::string CorpusText(const Finding& finding, const Example& example) {
     names.push_back(fmt::format("{}{}", "xyz"[i % 3], i / 3));
     numbers.push_back(HexFloat(example.x[i]));
   }
-  return fmt::format(
-      "# found by: definite fuzz --kernels {} --families {} --seed {}\n# not {}\n# {}\n{}\n{}\n",
-      finding.rows.front()->name, finding.cell.family->name, finding.cell.seed, finding.what,
-      settings, fmt::join(names, ","), fmt::join(numbers, ","));
+  return fmt::format("# found by: {}\n# {} was not {}\n# {}\n{}\n{}\n", command, energy.name, what,
+                     settings, fmt::join(names, ","), fmt::join(numbers, ","));
 }
 
 }  // namespace definite::fuzz

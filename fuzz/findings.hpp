@@ -31,6 +31,9 @@ struct Example {
   std::vector<double> x, p;
 };
 
+// What genes make, on the side where the energy is defined.
+Example ExampleOf(const EnergyRow& energy, const Family& family, const Genes& genes);
+
 // The configuration of a finding, and one that is made as simple as it can be and still breaks the
 // promise: not turned, of few digits, as far from degenerate as it goes. Not for crashes.
 Example Found(const Finding& finding);
@@ -39,8 +42,12 @@ Example Shrunk(const Finding& finding);
 // Whether a row breaks a promise there.
 bool Breaks(const KernelRow& row, const std::string& what, const Example& example);
 
+// The command that looks where it was found.
+std::string FuzzCommand(const Finding& finding);
+
 // A file of fuzz/corpus: configurations on record with one line (docs/advice.md), headed by the
-// command that found it.
-std::string CorpusText(const Finding& finding, const Example& example);
+// command that found it and by what is broken.
+std::string CorpusText(const std::string& command, const std::string& what, const EnergyRow& energy,
+                       const Example& example);
 
 }  // namespace definite::fuzz

@@ -4,7 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <map>
+#include <tuple>
 
 #include "benchmarks/harness/report.hpp"
 
@@ -137,6 +140,53 @@ Json ToJson(const Plan& plan, std::size_t all_cells, const std::vector<Json>& ce
                                 {"how", is_crash ? Json(finding.how) : Json()},
                                 {"x", is_crash ? Json() : HexNumbers(example.x)},
                                 {"p", is_crash ? Json() : HexNumbers(example.p)}});
+  }
+  return json;
+}
+
+Json DegeneracyMaps(const Json& fuzz) {
+  constexpr Verdict kFromWorst[] = {
+      Verdict::kCrash,  Verdict::kNonFinite, Verdict::kInconsistent, Verdict::kSilentZero,
+      Verdict::kNonPsd, Verdict::kDegraded,  Verdict::kPass};
+  struct Map {
+    std::array<Tally, kDecades> tallies;
+    std::map<std::string, std::array<Json, kDecades>> figures;
+  };
+  const auto larger = [](const Json& a, const Json& b) {
+    return b.is_null() || a.is_string() || (!b.is_string() && a > b);
+  };
+  std::map<std::tuple<std::string, std::string, std::string>, Map> maps;
+  for (const Json& cell : fuzz.at("cells")) {
+    const auto decade = cell.at("decade").get<std::size_t>();
+    for (const Json& row : cell.at("rows")) {
+      const auto& name = row.at("kernels").at(0).get_ref<const std::string&>();
+      const auto& energy = cell.at("energy").get_ref<const std::string&>();
+      // ENERGY/FILTER/SCALAR
+      const std::string rest = name.substr(energy.size() + 1);
+      Map& map = maps[{energy, cell.at("family"), rest.substr(0, rest.find('/'))}];
+      map.tallies.at(decade).Add(row.at("verdicts"));
+      for (const char* figure : {"distance", "rounding", "psd_defect", "relabelling"}) {
+        const Json& of_row = row.at(figure);
+        if (of_row.is_null()) continue;
+        Json& most = map.figures[figure].at(decade);
+        if (larger(of_row.at("max"), most)) most = of_row.at("max");
+      }
+    }
+  }
+  Json json = Json::array();
+  for (const auto& [key, map] : maps) {
+    Json entry = {{"energy", std::get<0>(key)},
+                  {"family", std::get<1>(key)},
+                  {"filter", std::get<2>(key)},
+                  {"verdict", Json::array()}};
+    for (const Tally& tally : map.tallies) {
+      const auto worst = std::ranges::find_if(kFromWorst, [&](Verdict v) { return tally.Of(v); });
+      entry["verdict"].push_back(worst == std::end(kFromWorst)
+                                     ? Json()
+                                     : Json(kVerdictNames[static_cast<std::size_t>(*worst)]));
+    }
+    for (const auto& [figure, most] : map.figures) entry[figure] = most;
+    json.push_back(std::move(entry));
   }
   return json;
 }

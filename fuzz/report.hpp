@@ -23,6 +23,13 @@ nlohmann::ordered_json ToJson(const Plan& plan, std::size_t all_cells,
                               const std::vector<nlohmann::ordered_json>& cells,
                               const std::vector<Reported>& findings);
 
+// docs/where-filters-fail.md, of a whole result.
+std::string ToMarkdown(const nlohmann::ordered_json& result);
+
+// What the page draws of a result's "fuzz": for each energy, family and filter, decade by decade,
+// the worst verdict and the largest errors; null where there is none.
+nlohmann::ordered_json DegeneracyMaps(const nlohmann::ordered_json& fuzz);
+
 // The families with their stencils.
 std::string FamilyTable();
 

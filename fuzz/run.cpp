@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::uint64_t kCasesTogether = 512;
+
 std::vector<const KernelRow*> RowsOf(const Plan& plan, const Cell& cell,
                                      const std::vector<Crash>& crashes) {
   std::vector<const KernelRow*> rows;
@@ -204,28 +206,45 @@ Json Check(const Plan& plan, const Cell& cell, std::vector<Crash> crashes) {
 void Run(const Plan& plan, const std::vector<Cell>& cells, const RunOptions& options,
          const std::function<void(const Cell&, Json)>& done) {
   struct Attempt {
-    const Cell* cell;
+    std::vector<const Cell*> cells;
     std::vector<Crash> crashes;
   };
+  // A process takes milliseconds to start: small cells share one, until something happens to it.
+  const std::size_t together = std::clamp<std::size_t>(kCasesTogether / plan.each, 1, 32);
   std::vector<Attempt> attempts;
-  for (const Cell& cell : cells) attempts.push_back({&cell, {}});
-  // Those that died are tried again without the row that it was.
+  for (const Cell& cell : cells) {
+    if (attempts.empty() || attempts.back().cells.size() == together) attempts.push_back({});
+    attempts.back().cells.push_back(&cell);
+  }
+  const auto judge = [&](std::size_t i) {
+    Json judged = Json::array();
+    for (const Cell* cell : attempts[i].cells) {
+      judged.push_back(Check(plan, *cell, attempts[i].crashes));
+    }
+    return judged.dump();
+  };
   while (!attempts.empty() && !Interrupted()) {
     std::vector<std::pair<std::size_t, std::string>> died;
-    InChildren(
-        attempts.size(), options.processes, options.cell_seconds,
-        [&](std::size_t i) { return Check(plan, *attempts[i].cell, attempts[i].crashes).dump(); },
-        [&](std::size_t i, const Ended& ended) {
-          if (ended.well) {
-            done(*attempts[i].cell, Json::parse(ended.text));
-          } else {
-            died.emplace_back(i, ended.text);
-          }
-        });
+    InChildren(attempts.size(), options.processes, options.cell_seconds, judge,
+               [&](std::size_t i, const Ended& ended) {
+                 if (!ended.well) {
+                   died.emplace_back(i, ended.text);
+                   return;
+                 }
+                 const Json judged = Json::parse(ended.text);
+                 for (std::size_t k = 0; k < judged.size(); ++k) {
+                   done(*attempts[i].cells[k], judged[k]);
+                 }
+               });
     std::vector<Attempt> again;
     for (const auto& [i, how] : died) {
       Attempt attempt = std::move(attempts[i]);
-      const Cell& cell = *attempt.cell;
+      if (attempt.cells.size() > 1) {
+        for (const Cell* cell : attempt.cells) again.push_back({{cell}, {}});
+        continue;
+      }
+      // Without the row that it was.
+      const Cell& cell = *attempt.cells.front();
       attempt.crashes.push_back(FindCrash(plan, cell, attempt.crashes, options, how));
       if (attempt.crashes.back().row) {
         again.push_back(std::move(attempt));

@@ -29,7 +29,7 @@ constexpr double kCheckpointSeconds = 20;
 struct FuzzOptions {
   std::vector<std::string> kernels = {"*"}, families;
   RunOptions run = {"1e6", "1e5", "42", {}, {}, {}, false};
-  std::optional<std::string> json, shard, corpus;
+  std::optional<std::string> json, shard, corpus, from;
   double minutes = 0;
   bool resume = false, list = false, zoo = false;
 };
@@ -184,7 +184,7 @@ void WriteCorpus(const std::string& folder, const std::vector<fuzz::Reported>& f
     std::ranges::replace(name, '/', '-');
     OutputFile("--corpus", fmt::format("{}/{}-{}-{}.csv", folder, name, finding.cell.family->name,
                                        finding.what))
-        .Commit(CorpusText(finding, example));
+        .Commit(CorpusText(FuzzCommand(finding), finding.what, *finding.cell.energy, example));
   }
 }
 
@@ -203,8 +203,20 @@ int RunZoo() {
   return all ? kOk : kBroken;
 }
 
+int ShowEarlier(const std::string& path) {
+  const Json result = ReadResult("--from", path);
+  try {
+    fmt::print("{}", fuzz::ToMarkdown(result));
+  } catch (const Json::exception& error) {
+    throw UsageError(
+        fmt::format("--from '{}': expected a result of definite fuzz: {}", path, error.what()));
+  }
+  return kOk;
+}
+
 int RunFuzz(const FuzzOptions& options) {
   if (options.zoo) return RunZoo();
+  if (options.from) return ShowEarlier(*options.from);
   if (options.list) {
     fmt::print("{}", fuzz::FamilyTable());
     return kOk;
@@ -264,6 +276,10 @@ void AddFuzz(CLI::App& app, int& exit_code) {
                    "sweep and advise read")
       ->type_name("FOLDER");
   command->add_flag("--list", options->list, "Show the families and stop");
+  command
+      ->add_option("--from", options->from,
+                   "Only write an earlier result as Markdown: who fails where")
+      ->type_name("FILE");
   command->add_flag("--zoo", options->zoo,
                     "Hunt filters that are known to be bad, and see that each is caught");
   command->footer(

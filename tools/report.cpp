@@ -1,5 +1,7 @@
 // definite report: results as one page, which works from disk.
 
+#include "fuzz/report.hpp"
+
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -79,11 +81,13 @@ Json PageDataOf(const std::string& path) {
     }
     shown["rows"] = Json::array();
     for (const Json& row : result.at("rows")) shown["rows"].push_back(ShownOf(row));
+    if (result.contains("fuzz")) shown["maps"] = fuzz::DegeneracyMaps(result.at("fuzz"));
     const Json tables = TablesOf(result, path);
-    if (shown["rows"].empty() && !shown.contains("speed") && tables.is_null()) {
+    if (shown["rows"].empty() && !shown.contains("speed") && !shown.contains("maps") &&
+        tables.is_null()) {
       throw UsageError(
-          fmt::format("FILE '{}': it has nothing to draw; expected a result of sweep, speed or "
-                      "reproduce",
+          fmt::format("FILE '{}': it has nothing to draw; expected a result of sweep, speed, "
+                      "reproduce or fuzz",
                       path));
     }
     return {{"file", std::filesystem::path(path).filename().string()},
@@ -149,7 +153,8 @@ void AddReport(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<ReportOptions>();
   CLI::App* command =
       app.add_subcommand("report", "Draws results: cost against error, as one page for a browser");
-  command->add_option("FILE", options->files, "Results of sweep, speed or reproduce")->required();
+  command->add_option("FILE", options->files, "Results of sweep, speed, reproduce or fuzz")
+      ->required();
   command->add_option("--out", options->out, "The page, one file that needs no network")
       ->type_name("FILE")
       ->required();

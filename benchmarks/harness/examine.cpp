@@ -76,6 +76,13 @@ const KernelRow* NearestOf(const EnergyRow& energy, std::span<const KernelRow* c
   return fast ? fast : FindKernel(energy.name + "/numeric/f64");
 }
 
+// In float128.
+double ConditioningAt(const reference::Energy<Quad>& energy, const double* x, const double* p,
+                      const EnergyRow& row) {
+  const std::vector<Quad> quad_x(x, x + row.dofs), quad_p(p, p + row.parameters.size());
+  return energy.conditioning(quad_x.data(), quad_p.data());
+}
+
 // How many eigenvalues of a are clearly positive.
 long PositiveCount(Packed a) {
   const double threshold = kRatioBound * PackedRows(a) * kUnit * FrobeniusNorm(a);
@@ -115,6 +122,11 @@ struct Examiner::Definitions {
     }
     return *in_domain_;
   }
+  // Double takes a wrong region for it beside the border of two.
+  double Conditioning() {
+    if (!conditioning_) conditioning_ = ConditioningAt(quad_energy_, x_, p_, row_);
+    return *conditioning_;
+  }
   // Whether the filter's definition is the Hessian itself, to the digits of float128.
   bool Keeps(const reference::Filter<Quad>& filter) {
     const reference::Matrix<Quad>& exact = QuadTruth().Hessian();
@@ -135,6 +147,7 @@ struct Examiner::Definitions {
   const reference::Energy<Quad>& quad_energy_;
   const double *x_, *p_;
   std::optional<bool> in_domain_;
+  std::optional<double> conditioning_;
   std::optional<Neighbours> neighbours_;
   std::optional<reference::Truth<double>> truth_;  // most configurations ask for neither
   std::optional<reference::Truth<Quad>> quad_truth_;
@@ -172,17 +185,12 @@ double Examiner::Bound() const {
   return kRatioBound * energy_->dofs * kUnit / configuration_.conditioning;
 }
 
-double Examiner::Bound(const double* x, const double* p) const {
-  return kRatioBound * energy_->dofs * kUnit / ConditioningAt(x, p);
-}
-
-double Examiner::ConditioningAt(const double* x, const double* p) const {
+double Examiner::Conditioning(const double* x, const double* p) const {
   // Fourth powers of lengths leave the range of doubles where lengths are far from 1.
   double largest = 0;
   for (int i = 0; i < energy_->dofs; ++i) largest = std::max(largest, std::abs(x[i]));
   if (largest > 1e-60 && largest < 1e60) return reference_->conditioning(x, p);
-  const std::vector<Quad> quad_x(x, x + energy_->dofs), quad_p(p, p + energy_->parameters.size());
-  return quad_reference_->conditioning(quad_x.data(), quad_p.data());
+  return ConditioningAt(*quad_reference_, x, p, *energy_);
 }
 
 void Examiner::Examine(const double* x, const double* p, Depth depth) {
@@ -231,7 +239,7 @@ void Examiner::Examine(const double* x, const double* p, const ExactOutput& exac
   if (!configuration_.active) return;
 
   configuration_.indefinite = !exact.of_h.psd;
-  configuration_.conditioning = ConditioningAt(x, p);
+  configuration_.conditioning = Conditioning(x, p);
   Definitions definitions(*energy_, *reference_, *quad_reference_, x, p);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     // Lanes give the same bits as the scalar row before them, as a rule: no need to look twice.
@@ -286,7 +294,7 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const
   if (norm > kGrowth * h_norm) figures.verdict = Verdict::kDegraded;
   if (depth.definition) {
     figures.defined = true;
-    const double bound = kDegraded / configuration_.conditioning;
+    double bound = kDegraded / configuration_.conditioning;
     double error = RelativeError(output.f, definitions.Of(*filters_[r]));
     // Written so that a NaN is doubted too.
     const bool ill_conditioned = !(kUnit * h_norm <= kIllConditioned * exact.nearest_norm);
@@ -297,6 +305,7 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const
         return;
       }
       ExamineTruth(r, output.f, definitions);
+      bound = kDegraded / configuration_.conditioning;
       error = *figures.rounding * energy_->dofs * kUnit;
       // What is open only for a row that promises accuracy: it takes long.
       const bool accurate = *figures.conditioned_rounding <= kRatioBound;
@@ -320,6 +329,10 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const
   }
 }
 
+double Examiner::BoundAt(const double* x, const double* p) const {
+  return kRatioBound * energy_->dofs * kUnit / ConditioningAt(*quad_reference_, x, p, *energy_);
+}
+
 double Examiner::OpenAt(const reference::Filter<Quad>& filter, const double* x,
                         const double* p) const {
   reference::Truth<Quad> truth(*quad_reference_, x, p);
@@ -336,6 +349,7 @@ bool Examiner::IsOpen(std::size_t r, Packed f, Definitions& definitions) const {
 void Examiner::ExamineTruth(std::size_t r, Packed f, Definitions& definitions) {
   RowFigures& figures = figures_[r];
   const reference::Matrix<Quad>& definition = definitions.Of(*quad_filters_[r]);
+  configuration_.conditioning = definitions.Conditioning();
   figures.rounding = RelativeError(f, definition) / (energy_->dofs * kUnit);
   figures.conditioned_rounding = *figures.rounding * configuration_.conditioning;
   figures.flip = PositiveCount(f) != PositiveCount(ToPacked(definition));
@@ -352,16 +366,17 @@ void Examiner::ExamineSpectrum(std::size_t r, const ExactOutput& exact, const Ro
   RowFigures& figures = figures_[r];
   const Packed f = output.f;
   const double norm = output.measures.norm, h_norm = exact.of_h.norm;
-  const double bound = Bound() * (h_norm + norm);
   const auto below_zero = [](Packed a) { return std::max(0.0, -Eigenvalues(a).front()); };
   figures.psd_defect = norm == 0 ? 0 : below_zero(f) / (energy_->dofs * kUnit * norm);
   const double shortfall = below_zero(Difference(f, exact.h));
   figures.majorises = h_norm == 0 ? 0 : shortfall / h_norm;
   // H and F, and each with what the digits of the input leave open.
   const auto exceeds = [&](double error) {
-    return !(error <= bound) && definitions.InDomain() &&
-           !(error <=
-             bound + definitions.Open(*exact_filter_) + definitions.Open(*quad_filters_[r]));
+    if (error <= Bound() * (h_norm + norm) || !definitions.InDomain()) return false;
+    configuration_.conditioning = definitions.Conditioning();
+    const double bound = Bound() * (h_norm + norm);
+    return !(error <= bound) && !(error <= bound + definitions.Open(*exact_filter_) +
+                                               definitions.Open(*quad_filters_[r]));
   };
   if (row.Promises(Property::kMajorises) && exceeds(shortfall)) {
     figures.broken.push_back(Property::kMajorises);
@@ -393,15 +408,17 @@ void Examiner::ExamineSymmetries(std::size_t r, const double* x, const double* p
     double spread = FrobeniusDistance(result, symmetry.Expected(output.f));
     if (std::isnan(spread)) spread = std::numeric_limits<double>::infinity();
     if (is_relabelling) relabelling = std::max(relabelling, spread);
-    const double bound = Bound() * (h_norm + norm);
-    if (spread <= 2 * bound || !row.Promises(symmetry.property) || !definitions.InDomain())
+    if (spread <= 2 * Bound() * (h_norm + norm) || !row.Promises(symmetry.property) ||
+        !definitions.InDomain() ||
+        std::ranges::find(figures.broken, symmetry.property) != figures.broken.end()) {
       continue;
-    if (std::ranges::find(figures.broken, symmetry.property) != figures.broken.end()) continue;
+    }
+    configuration_.conditioning = definitions.Conditioning();
+    const double here = Bound() * (h_norm + norm) + definitions.Open(filter);
     // Other numbers may be worse conditioned; turned or scaled, they are as good.
-    const double here = bound + definitions.Open(filter);
-    const double there =
-        is_relabelling ? Bound(new_x.data(), p) * (h_norm + norm) + OpenAt(filter, new_x.data(), p)
-                       : here;
+    const double there = is_relabelling ? (h_norm + norm) * BoundAt(new_x.data(), p) +
+                                              OpenAt(filter, new_x.data(), p)
+                                        : here;
     if (!(spread <= here + there)) figures.broken.push_back(symmetry.property);
   }
   figures.relabelling = relabelling == 0 ? 0 : relabelling / norm;

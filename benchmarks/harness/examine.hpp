@@ -121,13 +121,13 @@ class Examiner {
   bool DiffersFromScalar(std::size_t r, std::span<const RowOutput> outputs) const;
   // Whether the digits of the input leave room for f beside the row's definition.
   bool IsOpen(std::size_t r, Packed f, Definitions& definitions) const;
-  // How far the digits of another configuration leave a definition open.
+  // Of another configuration: its bound, and how far its digits leave a definition open.
+  double BoundAt(const double* x, const double* p) const;
   double OpenAt(const reference::Filter<reference::Quad>& filter, const double* x,
                 const double* p) const;
   void ExamineEnergy(const double* x, const double* p, Definitions& definitions);
   double Bound() const;  // of an error relative to |F|, by the conditioning
-  double Bound(const double* x, const double* p) const;
-  double ConditioningAt(const double* x, const double* p) const;
+  double Conditioning(const double* x, const double* p) const;
 
   const EnergyRow* energy_;
   std::vector<const KernelRow*> rows_;

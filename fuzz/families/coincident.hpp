@@ -9,6 +9,9 @@ struct Coincident {
   static constexpr std::string_view kName = "coincident";
   static constexpr std::string_view kMeaning =
       "distance of two vertices of the two primitives, in edges";
+  static constexpr std::string_view kRemedy =
+      "Nothing for signed lengths. An unsigned length has no direction at 0: keep "
+      "barriers apart, or take the signed length.";
   static constexpr std::span<const std::string_view> kStencils = kAllContacts;
 
   static void Deform(const Genes& genes, Shape& shape) {

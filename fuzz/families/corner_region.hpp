@@ -9,6 +9,9 @@ struct CornerRegion {
   static constexpr std::string_view kName = "corner_region";
   static constexpr std::string_view kMeaning =
       "how far the foot point is from the border of a region, in edges";
+  static constexpr std::string_view kRemedy =
+      "Nothing: the Hessian of an unsigned length may jump at the border, and a filter "
+      "follows it.";
   static constexpr std::span<const std::string_view> kStencils = kContacts;
 
   static void Deform(const Genes& genes, Shape& shape) {

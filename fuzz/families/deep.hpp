@@ -8,6 +8,9 @@ namespace definite::fuzz::families {
 struct Deep {
   static constexpr std::string_view kName = "deep";
   static constexpr std::string_view kMeaning = "edges over the depth they have gone through";
+  static constexpr std::string_view kRemedy =
+      "Analytic, split or nearest: what clamps eigenvalues in double has an error of u "
+      "|H|, and nearly all of H is thrown away.";
   static constexpr std::span<const std::string_view> kStencils = kPairs;
 
   static void Deform(const Genes& genes, Shape& shape) {

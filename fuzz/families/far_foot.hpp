@@ -8,6 +8,8 @@ namespace definite::fuzz::families {
 struct FarFoot {
   static constexpr std::string_view kName = "far_foot";
   static constexpr std::string_view kMeaning = "one over the foot point, in edges";
+  static constexpr std::string_view kRemedy =
+      "Leave such pairs out: no contact is there, and the length is good to few digits.";
   static constexpr std::span<const std::string_view> kStencils = kContacts;
 
   static void Deform(const Genes& genes, Shape& shape) {

@@ -11,6 +11,8 @@ namespace definite::fuzz::families {
 struct Scale {
   static constexpr std::string_view kName = "scale";
   static constexpr std::string_view kMeaning = "lengths times its 20th power, or over its 18th";
+  static constexpr std::string_view kRemedy =
+      "Any filter here but the formulas as printed, which need lengths near 1.";
   static constexpr std::span<const std::string_view> kStencils = kEverything;
 
   static void Deform(const Genes& genes, Shape& shape) {

@@ -8,6 +8,9 @@ namespace definite::fuzz::families {
 struct ShiftFar {
   static constexpr std::string_view kName = "shift";
   static constexpr std::string_view kMeaning = "edges over the distance from the origin";
+  static constexpr std::string_view kRemedy =
+      "Subtract an origin of the pair before, or nothing: what is lost is lost in the "
+      "coordinates.";
   static constexpr std::span<const std::string_view> kStencils = kEverything;
 
   static void Deform(const Genes& genes, Shape& shape) {

@@ -8,6 +8,9 @@ namespace definite::fuzz::families {
 struct Sliver {
   static constexpr std::string_view kName = "sliver";
   static constexpr std::string_view kMeaning = "height of a triangle over its longest edge";
+  static constexpr std::string_view kRemedy =
+      "Mesh better: |H| grows with one over the height squared. No filter here loses "
+      "digits but the formulas as printed.";
   static constexpr std::span<const std::string_view> kStencils = kFaces;
 
   static void Deform(const Genes& genes, Shape& shape) { shape.sine = genes.delta; }

@@ -8,6 +8,8 @@ namespace definite::fuzz::families {
 struct Straight {
   static constexpr std::string_view kName = "straight";
   static constexpr std::string_view kMeaning = "pi less the angle of a strand, or the angle";
+  static constexpr std::string_view kRemedy =
+      "Mind kinks: the Hessian of bending grows with one over the sine of the angle.";
   static constexpr std::span<const std::string_view> kStencils = kStrands;
 
   static void Deform(const Genes& genes, Shape& shape) {

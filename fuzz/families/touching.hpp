@@ -8,6 +8,8 @@ namespace definite::fuzz::families {
 struct Touching {
   static constexpr std::string_view kName = "touching";
   static constexpr std::string_view kMeaning = "distance over eps, of both signs";
+  static constexpr std::string_view kRemedy =
+      "Signed lengths: the formulas as printed divide by the distance.";
   static constexpr std::span<const std::string_view> kStencils = kAllContacts;
 
   static void Deform(const Genes& genes, Shape& shape) {

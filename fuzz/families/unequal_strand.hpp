@@ -8,6 +8,9 @@ namespace definite::fuzz::families {
 struct UnequalStrand {
   static constexpr std::string_view kName = "unequal_strand";
   static constexpr std::string_view kMeaning = "one edge of a strand over the other";
+  static constexpr std::string_view kRemedy =
+      "Keep the edges of a strand alike: its Hessian grows with one over the square of "
+      "the shorter.";
   static constexpr std::span<const std::string_view> kStencils = kStrands;
 
   static void Deform(const Genes& genes, Shape& shape) {

@@ -159,6 +159,51 @@ Modes<T, D, K> NearestPsd(const Modes<T, D, K>& modes) {
   return positive;
 }
 
+// Turns vectors r by reflections that put the heaviest mode, of weight |lambda| |r|^2, on the first
+// axis, and the heaviest of what is left on the second. Where one or two outweigh all others, their
+// sum is graded then, and rotations lose nothing of what is small.
+template <class T, int N, int K>
+struct HeaviestFirst {
+  static constexpr int kReflections = 2;
+  Vec<T, N> mirror[kReflections];  // v -> v - factor (mirror.v) mirror
+  T factor[kReflections];
+
+  HeaviestFirst(const T (&lambda)[K], Vec<T, N> (&r)[K]) {
+    for (int axis = 0; axis < kReflections; ++axis) {
+      T most = T(-1.0), which = T(0.0);
+      Vec<T, N> u = r[0];
+      for (int m = 0; m < K; ++m) {
+        T squared = T(0.0);
+        for (int i = axis; i < N; ++i) squared = MulAdd(r[m][i], r[m][i], squared);
+        const T weight = Abs(lambda[m]) * squared;
+        const auto heavier = weight > most;
+        most = Select(heavier, weight, most);
+        which = Select(heavier, T(m), which);
+        for (int i = 0; i < N; ++i) u[i] = Select(heavier, r[m][i], u[i]);
+      }
+      for (int i = 0; i < axis; ++i) u[i] = T(0.0);
+      const T squared = Dot(u, u), norm = Sqrt(squared);
+      u[axis] = u[axis] + Select(u[axis] < T(0.0), -norm, norm);
+      const T length2 = Dot(u, u);
+      const auto none = length2 <= T(0.0);
+      factor[axis] = Select(none, T(0.0), T(2.0) / Select(none, T(1.0), length2));
+      mirror[axis] = u;
+      for (int m = 0; m < K; ++m) {
+        Reflect(axis, r[m]);
+        const auto chosen = Abs(which - T(m)) < T(0.5);
+        for (int i = axis + 1; i < N; ++i) r[m][i] = Select(chosen, T(0.0), r[m][i]);
+      }
+    }
+  }
+
+  void Reflect(int axis, Vec<T, N>& v) const {
+    v = v - (factor[axis] * Dot(mirror[axis], v)) * mirror[axis];
+  }
+  void TurnBack(Vec<T, N>& v) const {
+    for (int axis = kReflections - 1; axis >= 0; --axis) Reflect(axis, v);
+  }
+};
+
 // The same of modes over four points that no translation changes: those are 9 dimensions with a
 // basis of constants, halves of (1, 1, -1, -1), (1, -1, 1, -1) and (1, -1, -1, 1).
 template <class T, int K>
@@ -174,6 +219,7 @@ Modes<T, 12, 9> NearestPsdOfFour(const Modes<T, 12, K>& modes) {
       r[m][6 + i] = half * (d01 - d23);
     }
   }
+  const HeaviestFirst<T, 9, K> turned(modes.lambda, r);
   T a[9][9];
   for (int i = 0; i < 9; ++i) {
     for (int j = i; j < 9; ++j) {
@@ -185,9 +231,11 @@ Modes<T, 12, 9> NearestPsdOfFour(const Modes<T, 12, K>& modes) {
   Modes<T, 12, 9> positive;
   for (int m = 0; m < 9; ++m) {
     positive.lambda[m] = Select(e.values[m] < T(0.0), T(0.0), e.values[m]);
+    Vec<T, 9> z;
+    for (int i = 0; i < 9; ++i) z[i] = half * e.vectors[i][m];
+    turned.TurnBack(z);
     for (int i = 0; i < 3; ++i) {
-      const T z0 = half * e.vectors[i][m], z1 = half * e.vectors[3 + i][m];
-      const T z2 = half * e.vectors[6 + i][m];
+      const T z0 = z[i], z1 = z[3 + i], z2 = z[6 + i];
       positive.v[m][i] = z0 + (z1 + z2);
       positive.v[m][3 + i] = z0 - (z1 + z2);
       positive.v[m][6 + i] = (z1 - z2) - z0;

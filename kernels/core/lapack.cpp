@@ -1,6 +1,6 @@
 #include "kernels/core/lapack.hpp"
 
-#include <algorithm>
+#include <cstring>
 
 #include "kernels/core/eigen.hpp"
 
@@ -34,7 +34,7 @@ bool SolveByD(double (&a)[kN][kN], Eigenpairs& pairs) {
   double work[kWork];
   int integers[kIntegers], info;
   dsyevd_("V", "L", &kN, a[0], &kN, pairs.values, work, &kWork, integers, &kIntegers, &info);
-  std::copy(a[0], a[0] + kN * kN, pairs.vectors[0]);
+  std::memcpy(pairs.vectors, a, sizeof(a));
   return info == 0;
 }
 bool SolveByR(double (&a)[kN][kN], Eigenpairs& pairs) {

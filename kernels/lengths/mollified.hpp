@@ -22,7 +22,7 @@ template <class T>
 struct MollifiedFrame {
   CollisionFrame<T, EdgeEdge, 2> length;
   Vec3<T> row0, row1;  // of c0 and c1 over the edges; that of c2 is length.w
-  T a, b, inverse_a;
+  T a, b, inverse_a, alpha;
   Vec3<T> t0, t1, normal;
   // normal = cosine along + sine across, t1 = sine along - cosine across; `along` is n where the
   // closest points make n normal to c0.
@@ -74,9 +74,9 @@ DEFINITE_INLINE MollifiedFrame<T> MollifiedFrameOf(const Vec<T, 12>& x, const T&
   frame.a = Sqrt(Select(f.outside, T(1.0), Dot(first, first)));
   frame.inverse_a = T(1.0) / frame.a;
   frame.t0 = frame.inverse_a * first;
-  const T alpha = Dot(frame.t0, second) * frame.inverse_a;
+  frame.alpha = Dot(frame.t0, second) * frame.inverse_a;
   frame.row0 = SelectAll(swapped, of_b, of_a);
-  frame.row1 = SelectAll(swapped, of_a, of_b) - alpha * frame.row0;
+  frame.row1 = SelectAll(swapped, of_a, of_b) - frame.alpha * frame.row0;
 
   // Inside, n is the normal of both edges, and all directions are the length's.
   const Direction<T> apart = PartNormalTo(frame.t0, second);
@@ -172,16 +172,21 @@ DEFINITE_INLINE Modes<T, 9, 11> SumOfModes(const MollifiedFrame<T>& frame,
   SetPair(h.tilt, InFrame(none, frame.normal, none), InFrame(none, none, f.t[1]), 2, modes);
   modes.lambda[4] = h.lift;
   modes.v[4] = InFrame(frame.normal, none, none);
-  // u v^T + v u^T = ((u + v)(u + v)^T - (u - v)(u - v)^T) / 2
+  // u v^T + v u^T = ((u + v)(u + v)^T - (u - v)(u - v)^T) / 2, where u u^T and v v^T cancel: both
+  // must be of one size, though the rows of d1 are as large as one edge is in units of the other.
   const T half = T(0.5) * h.shear;
+  const T large = Sqrt(T(1.0) + Abs(frame.alpha)), small = T(1.0) / large;
+  const auto pair = [&](const Vec3<T>& in0, const Vec3<T>& in1, double sign) {
+    return InFrame(large * in0, T(sign) * (small * in1), none);
+  };
   modes.lambda[5] = half;
-  modes.v[5] = InFrame(frame.t0, frame.t1, none);
+  modes.v[5] = pair(frame.t0, frame.t1, 1);
   modes.lambda[6] = -half;
-  modes.v[6] = InFrame(frame.t0, T(-1.0) * frame.t1, none);
+  modes.v[6] = pair(frame.t0, frame.t1, -1);
   modes.lambda[7] = -half;
-  modes.v[7] = InFrame(frame.t1, frame.t0, none);
+  modes.v[7] = pair(frame.t1, frame.t0, 1);
   modes.lambda[8] = half;
-  modes.v[8] = InFrame(frame.t1, T(-1.0) * frame.t0, none);
+  modes.v[8] = pair(frame.t1, frame.t0, -1);
   const T norm2 = MulAdd(frame.a, frame.a, frame.b * frame.b), norm = Sqrt(norm2);
   const T inverse = T(1.0) / norm;
   const T grow[3] = {h.grow * norm2, h.couple * norm, h.curvature};

@@ -210,3 +210,46 @@ export function historyChart(results, width) {
     resolve: { scale: { y: "independent" } },
   };
 }
+
+// The verdicts, from the best on, in colours that do not rely on red and green.
+const verdicts = { pass: "#56b4e9", degraded: "#e69f00", non_psd: "#d55e00", silent_zero: "#cc79a7", inconsistent: "#a6761d", non_finite: "#7b3294", crash: "#888888" };
+
+export const mapErrors = {
+  rounding: "largest rounding (test ratio)", distance: "largest distance to the nearest PSD matrix",
+  psd_defect: "largest PSD defect (test ratio)", relabelling: "largest spread over vertex numberings",
+};
+
+// How a filter fares on the way to a degeneracy: delta shrinks to the right, and is 0 at the end.
+export function degeneracyChart(maps, width, { energy, error, filter }) {
+  const least = 1e-18, most = 1e18;
+  const values = maps.filter((m) => m.energy === energy && (filter === "all" || m.filter === filter)).flatMap((m) =>
+    (m[error] ?? []).flatMap((value, decade) => value === null || value === undefined ? [] : [{
+      panel: m.family, filter: m.filter, decade, value, verdict: m.verdict[decade] ?? "pass",
+      delta: decade === 16 ? "0" : `1e-${decade + 1} to 1e-${decade}`,
+      y: Math.min(most, Math.max(least, typeof value === "number" ? value : most)),
+    }]));
+  if (!values.length) return null;
+  for (const line of groupBy(values, (v) => `${v.panel} ${v.filter}`).values()) {
+    line.reduce((a, b) => (b.y > a.y ? b : a)).worst = true;
+  }
+  const size = panels(width, groups(values).length);
+  const x = { field: "decade", type: "quantitative", title: "-log10 of delta (at the end delta = 0)", scale: { domain: [0, 16] }, axis: { tickCount: 5 } };
+  const y = log("y", mapErrors[error]);
+  return {
+    ...panelled(values, size),
+    spec: {
+      width: size.width, height: 220,
+      encoding: { x, y, detail: { field: "filter" } },
+      layer: [
+        { mark: { type: "line", strokeWidth: 1, color: "#888", opacity: 0.5 } },
+        { mark: { type: "point", filled: true, size: 30 },
+          encoding: {
+            color: { field: "verdict", type: "nominal", title: "worst verdict", scale: { domain: Object.keys(verdicts), range: Object.values(verdicts) } },
+            tooltip: [{ field: "filter" }, { field: "panel", title: "family" }, { field: "delta" }, { field: "value", title: mapErrors[error] }, { field: "verdict" }],
+          } },
+        { transform: [{ filter: "datum.worst && datum.verdict !== 'pass'" }],
+          mark: { type: "text", fontSize: 9, dy: -7, limit: 110 }, encoding: { text: { field: "filter" } } },
+      ],
+    },
+  };
+}

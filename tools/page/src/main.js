@@ -1,7 +1,7 @@
 import { parse, View } from "vega";
 import { compile } from "vega-lite";
 import { Handler } from "vega-tooltip";
-import { distributionChart, floorChart, historyChart, paretoChart, relabellingChart, ringsOf, stagesChart } from "./charts.js";
+import { degeneracyChart, distributionChart, floorChart, historyChart, mapErrors, paretoChart, relabellingChart, ringsOf, stagesChart } from "./charts.js";
 import { costs, errors, points, rowsOf } from "./data.js";
 import { csv, fromMarkdown, save } from "./tables.js";
 import { theme } from "./theme.js";
@@ -83,6 +83,16 @@ if (rows.length) {
   if (relabellingChart(rows, 900)) {
     chart(section("relabelling", "Does the answer depend on vertex numbering", "How much the filtered matrix changes when the vertices are numbered otherwise: a dot at the median, a tick at the worst. At rounding it does not depend on the numbering."), (width) => relabellingChart(rows, width), "relabelling");
   }
+}
+
+const maps = shown.flatMap(({ json }) => json.maps ?? []);
+if (maps.length) {
+  const energies = [...new Set(maps.map((m) => m.energy))], filters = [...new Set(maps.map((m) => m.filter))];
+  const choice = { energy: energies.find((name) => name.endsWith("vertex_face/signed/quadratic")) ?? energies[0], error: "rounding", filter: "all" };
+  const s = section("degeneracy", "What breaks near a degeneracy", "Each panel is a family of configurations that become degenerate as delta goes to 0, on the right. A line is a filter: the largest error in each decade of delta, in the colour of the worst verdict there. Rounding is what was looked at in float128: a sample, worst cases, and what was in doubt.");
+  const { tools, draw } = chart(s, (width) => degeneracyChart(maps, width, choice), "degeneracy");
+  const offer = (name, all) => picker(name, all, choice[name], (value) => { choice[name] = value; draw(); });
+  tools.prepend(offer("energy", energies.map((e) => [e, e])), offer("error", Object.entries(mapErrors)), offer("filter", ["all", ...filters].map((f) => [f, f])));
 }
 
 if (history) {
