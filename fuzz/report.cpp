@@ -152,6 +152,10 @@ Json DegeneracyMaps(const Json& fuzz) {
     std::array<Tally, kDecades> tallies;
     std::map<std::string, std::array<Json, kDecades>> figures;
   };
+  // Three digits are more than a chart shows.
+  const auto rounded = [](const Json& number) {
+    return number.is_string() ? number : Json::parse(fmt::format("{:.3g}", number.get<double>()));
+  };
   const auto larger = [](const Json& a, const Json& b) {
     return b.is_null() || a.is_string() || (!b.is_string() && a > b);
   };
@@ -169,7 +173,7 @@ Json DegeneracyMaps(const Json& fuzz) {
         const Json& of_row = row.at(figure);
         if (of_row.is_null()) continue;
         Json& most = map.figures[figure].at(decade);
-        if (larger(of_row.at("max"), most)) most = of_row.at("max");
+        if (larger(of_row.at("max"), most)) most = rounded(of_row.at("max"));
       }
     }
   }

@@ -229,11 +229,17 @@ export function degeneracyChart(maps, width, { energy, error, filter }) {
       y: Math.min(most, Math.max(least, typeof value === "number" ? value : most)),
     }]));
   if (!values.length) return null;
-  for (const line of groupBy(values, (v) => `${v.panel} ${v.filter}`).values()) {
-    line.reduce((a, b) => (b.y > a.y ? b : a)).worst = true;
+  // Filters that fail are named where they are worst, from the worst on, as long as there is room.
+  for (const panel of groups(values)) {
+    const named = [];
+    const worst = [...groupBy(panel, (v) => v.filter).values()].map((line) => line.reduce((a, b) => (b.y > a.y ? b : a)));
+    for (const v of worst.filter((p) => p.verdict !== "pass" && p.filter !== "none").sort((a, b) => b.y - a.y)) {
+      v.named = named.every((n) => Math.abs(n.decade - v.decade) > 6 || Math.abs(Math.log10(n.y / v.y)) > 3);
+      if (v.named) named.push(v);
+    }
   }
   const size = panels(width, groups(values).length);
-  const x = { field: "decade", type: "quantitative", title: "-log10 of delta (at the end delta = 0)", scale: { domain: [0, 16] }, axis: { tickCount: 5 } };
+  const x = { field: "decade", type: "quantitative", title: "-log10 of delta (at the end delta = 0)", scale: { domain: [-0.5, 16.5], nice: false }, axis: { values: [0, 4, 8, 12, 16] } };
   const y = log("y", mapErrors[error]);
   return {
     ...panelled(values, size),
@@ -241,14 +247,15 @@ export function degeneracyChart(maps, width, { energy, error, filter }) {
       width: size.width, height: 220,
       encoding: { x, y, detail: { field: "filter" } },
       layer: [
-        { mark: { type: "line", strokeWidth: 1, color: "#888", opacity: 0.5 } },
-        { mark: { type: "point", filled: true, size: 30 },
+        { mark: { type: "line", strokeWidth: 1, color: "#888", opacity: 0.5, clip: true } },
+        { mark: { type: "point", filled: true, size: 30, clip: true },
           encoding: {
             color: { field: "verdict", type: "nominal", title: "worst verdict", scale: { domain: Object.keys(verdicts), range: Object.values(verdicts) } },
             tooltip: [{ field: "filter" }, { field: "panel", title: "family" }, { field: "delta" }, { field: "value", title: mapErrors[error] }, { field: "verdict" }],
           } },
-        { transform: [{ filter: "datum.worst && datum.verdict !== 'pass'" }],
-          mark: { type: "text", fontSize: 9, dy: -7, limit: 110 }, encoding: { text: { field: "filter" } } },
+        { transform: [{ filter: "datum.named" }],
+          mark: { type: "text", fontSize: 10, dy: -8, limit: 110, clip: true, align: { expr: "datum.decade > 8 ? 'right' : 'left'" } },
+          encoding: { text: { field: "filter" } } },
       ],
     },
   };
