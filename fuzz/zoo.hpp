@@ -13,7 +13,7 @@ namespace definite::fuzz {
 struct Exhibit {
   std::string_view name, mistake;
   std::string_view caught_by;  // the promise that it must be seen to break, or "crash"
-  KernelRow row;               // promises all that its filter does
+  KernelRow row;               // promises everything
 };
 
 std::span<const Exhibit> Exhibits();

@@ -147,9 +147,10 @@ TEST(Findings, AreNoneOfAGoodFilter) {
 }
 
 TEST(Findings, OfValueAndGradientHaveTheirPlace) {
-  // Another energy's gradient under this one's name.
   EnergyRow energy = Energy(kEnergy);
-  energy.gradient = Energy("collision/vertex_face/signed/cubic").gradient;
+  energy.gradient = [](const double*, const double*, double* out, long count) {
+    std::fill_n(out, 12 * count, 0.0);
+  };
   KernelRow row = *FindKernel(std::string(kEnergy) + "/nearest/f64");
   row.energy = &energy;
   fuzz::Example example;
