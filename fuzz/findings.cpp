@@ -160,9 +160,10 @@ std::vector<Finding> FindingsOf(const Plan& plan, const std::vector<Json>& cells
 
 std::string ReplayCommand(const Finding& finding) {
   if (finding.rows.empty()) return "";
-  return fmt::format("definite replay --kernel {} --distribution {} --seed {} --index {}",
-                     finding.rows.front()->name, finding.cell.Distribution(), finding.cell.seed,
-                     finding.index);
+  SweepPlan sweep;
+  sweep.distribution = FindFamily(finding.cell.Distribution());
+  sweep.seed = finding.cell.seed;
+  return definite::ReplayCommand(sweep, *finding.rows.front(), finding.index);
 }
 
 Example Found(const Finding& finding) {

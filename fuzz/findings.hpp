@@ -2,7 +2,6 @@
 
 // What a run found: promises that are broken, and the simplest configuration that shows it.
 
-#include <span>
 #include <string>
 #include <vector>
 

@@ -80,16 +80,27 @@ Json RowJson(const RowResult& r) {
   return json;
 }
 
-// Lanes give the same as scalars, as a rule: what is said of several rows is said once.
-void Append(Json& rows, Json row) {
-  for (Json& earlier : rows) {
-    Json same = row;
-    same["kernels"] = earlier["kernels"];
-    if (same != earlier) continue;
-    earlier["kernels"].push_back(row["kernels"][0]);
-    return;
+// Lanes give the same as scalars, as a rule: what is said of several rows of a filter is said once.
+Json RowsJson(const std::vector<RowResult>& results) {
+  Json rows = Json::array();
+  std::vector<std::string_view> filters;  // of the rows
+  for (const RowResult& r : results) {
+    const Json row = RowJson(r);
+    const auto is_same = [&](std::size_t i) {
+      Json same = row;
+      same["kernels"] = rows[i]["kernels"];
+      return filters[i] == r.row->filter && same == rows[i];
+    };
+    std::size_t i = 0;
+    while (i < rows.size() && !is_same(i)) ++i;
+    if (i < rows.size()) {
+      rows[i]["kernels"].push_back(r.row->name);
+    } else {
+      rows.push_back(row);
+      filters.push_back(r.row->filter);
+    }
   }
-  rows.push_back(std::move(row));
+  return rows;
 }
 
 // Runs each row on each configuration, and notes before which.
@@ -192,7 +203,7 @@ Json Check(const Plan& plan, const Cell& cell, std::vector<Crash> crashes) {
     json["active"] = energy.statistics.active;
     json["indefinite"] = energy.statistics.indefinite;
     json["out_of_domain"] = energy.statistics.out_of_domain;
-    for (const RowResult& r : energy.rows) Append(json["rows"], RowJson(r));
+    json["rows"] = RowsJson(energy.rows);
   }
   json["crashes"] = Json::array();
   for (const Crash& crash : crashes) {

@@ -5,7 +5,6 @@
 // as and resumed from.
 
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>

@@ -36,6 +36,9 @@ class Fuzz(unittest.TestCase):
         self.assertEqual(done.returncode, code, done.stderr)
         result = json.loads(path.read_text())
         VALIDATOR.validate(result)
+        for cell in result["fuzz"]["cells"]:
+            for row in cell["rows"]:  # of one filter, also where nothing is active
+                self.assertEqual(len({name.rsplit("/", 1)[0] for name in row["kernels"]}), 1)
         return result["fuzz"], done
 
     def test_every_cell_is_seen(self):
@@ -74,9 +77,7 @@ class Fuzz(unittest.TestCase):
             time.sleep(0.3)
             killed.kill()
         self.assertEqual(json.loads(path.read_text()), kept)
-        start = time.monotonic()
         self.assertEqual(run(*words[1:]).returncode, 0)
-        self.assertLess(time.monotonic() - start, 300)
         whole = json.loads(path.read_text())
         self.assertFalse(whole["partial"])
         straight, _ = self.fuzz(*SMALL[:-2], "--count", "3e5")
@@ -129,6 +130,9 @@ class Fuzz(unittest.TestCase):
         seeds = {cell["seed"] for cell in fuzz["cells"]}
         self.assertEqual(seeds, set(range(42, 42 + fuzz["plan"]["passes"])))
         self.assertGreater(len(seeds), 1)
+        again, _ = self.fuzz(*SMALL[:-2], "--count", "34", "--kernels", ENERGY + "/none/f64",
+                             "--families", "shift", "--resume")
+        self.assertEqual(again["cells"], fuzz["cells"])
 
     def test_bad_words(self):
         for words, wanted in (

@@ -68,7 +68,8 @@ fuzz::Plan PlanOf(const FuzzOptions& options) {
 // The cells of a run, by name: those of its file, and those that come.
 using Done = std::map<std::string, Json>;
 
-Done Earlier(const FuzzOptions& options, const fuzz::Plan& plan) {
+// What --resume finds, with as many passes as that has.
+Done Earlier(const FuzzOptions& options, fuzz::Plan& plan) {
   Done done;
   if (!options.resume) return done;
   if (!options.json || options.json == "-") {
@@ -83,7 +84,8 @@ Done Earlier(const FuzzOptions& options, const fuzz::Plan& plan) {
   if (earlier.at("build") != DescribeBuild()) refuse("made by another program");
   if (earlier.at("protocol") != ProtocolHash()) refuse("made under another protocol");
   Json then = earlier.at("fuzz").at("plan"), now = ToJson(plan);
-  then["passes"] = now["passes"];
+  plan.passes = then.at("passes");
+  now["passes"] = then["passes"];
   for (const auto& [key, value] : now.items()) {
     if (then.at(key) != value)
       refuse(fmt::format("its {} are others: {}", key, then.at(key).dump()));
@@ -112,7 +114,7 @@ class FuzzRun {
   // Passes over all cells, one or as many as begin within the time; false if interrupted.
   bool Go() {
     Progress progress(isatty(STDERR_FILENO) != 0);
-    for (plan_.passes = 1;; ++plan_.passes) {
+    for (;; ++plan_.passes) {
       RunMissing(progress);
       if (Interrupted() || WallSeconds() - start_ >= 60 * options_.minutes) break;
     }
