@@ -61,14 +61,24 @@ Shape InShort(const Shape& s) {
   return shape;
 }
 
+// Half of all configurations leave the side to the sign of l.
+double SideOf(const Genes& genes) {
+  const int quarter = static_cast<int>(16 * genes.u[6]) % 4;
+  return quarter == 2 ? 1 : quarter == 3 ? -1 : 0;
+}
+
 // The parameters in a unit of length; false if one that is more than a length cannot be said in it.
-bool ParametersIn(double unit, const Shape& shape, const DrawTarget& target, double* p) {
+bool ParametersIn(double unit, const Shape& shape, const Genes& genes, const DrawTarget& target,
+                  double* p) {
   bool said = true;
   for (const Parameter& parameter : target.parameters) {
     double power = 1;
     for (int k = 0; k < std::abs(parameter.length_power); ++k) power *= unit;
     if (parameter.length_power < 0) power = 1 / power;
-    *p = (parameter.name == "eps" ? shape.eps : parameter.value) * power;
+    const double value = parameter.name == "eps"    ? shape.eps
+                         : parameter.name == "side" ? SideOf(genes)
+                                                    : parameter.value;
+    *p = value * power;
     if (parameter.length_power > 1 && !std::isnormal(*p)) said = false;
     ++p;
   }
@@ -131,8 +141,8 @@ Shape OrdinaryShape(const Genes& genes) {
 void Pose(const Shape& given, const Genes& genes, const DrawTarget& target, double* x, double* p) {
   const Shape shape = genes.pose == Genes::kDyadic ? InShort(given) : given;
   // Where a parameter cannot be said in such units, the configuration stays in its own.
-  const double unit = ParametersIn(shape.unit, shape, target, p) ? shape.unit : 1;
-  if (unit != shape.unit) ParametersIn(unit, shape, target, p);
+  const double unit = ParametersIn(shape.unit, shape, genes, target, p) ? shape.unit : 1;
+  if (unit != shape.unit) ParametersIn(unit, shape, genes, target, p);
   const auto& u = genes.u;
   const std::array<double, 4> turn = {NormalQuantile(u[8]), NormalQuantile(u[9]),
                                       NormalQuantile(u[10]), NormalQuantile(u[11])};

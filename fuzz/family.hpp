@@ -52,7 +52,8 @@ struct Shape {
 };
 
 // Nothing degenerate: edges from 1/2 to 2, an angle of 30 to 150 degrees, the foot point inside,
-// |l| below eps.
+// |l| below eps. Where an energy has a side, Pose leaves it open for one half, and draws it for the
+// other.
 Shape OrdinaryShape(const Genes& genes);
 
 // The configuration: dofs numbers x and a number p for each parameter.

@@ -49,13 +49,13 @@ std::string Percent(std::uint64_t part, std::uint64_t whole) {
   return fmt::format("{:.2f}", std::min(percent, 99.99));
 }
 
-Json HexNumbers(const std::vector<double>& numbers) {
+}  // namespace
+
+nlohmann::ordered_json HexNumbers(const std::vector<double>& numbers) {
   Json json = Json::array();
   for (const double number : numbers) json.push_back(HexFloat(number));
   return json;
 }
-
-}  // namespace
 
 std::string ToTable(const Plan& plan, const std::vector<Json>& cells) {
   // A filter's rows of one energy that give the same bits are one.

@@ -30,6 +30,8 @@ std::string ToMarkdown(const nlohmann::ordered_json& result);
 // the worst verdict and the largest errors; null where there is none.
 nlohmann::ordered_json DegeneracyMaps(const nlohmann::ordered_json& fuzz);
 
+nlohmann::ordered_json HexNumbers(const std::vector<double>& numbers);
+
 // The families with their stencils.
 std::string FamilyTable();
 

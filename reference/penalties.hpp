@@ -103,9 +103,15 @@ struct PenaltyOf : L {
     const T l = L::Length(at, p);
     return Penalty(Variables<1>(&l)[0], p).gradient[0] * L::RemainderLength(c, at, p);
   }
+  // Not even float128 tells a length of 1e-32 edges from 0.
   template <class T>
   static bool InDomain(const T* x, const T* p) {
-    return L::InDomain(x, p) && P::InDomain(L::Length(x, p), p, p + L::kParams);
+    using std::abs;
+    if (!L::InDomain(x, p)) return false;
+    T longest = T(0);
+    for (int i = 3; i < L::kDofs; ++i) longest = std::max(longest, T(abs(x[i] - x[i % 3])));
+    const T s = L::Length(x, p);
+    return P::InDomain(abs(s) <= T(1e-32) * longest ? T(0) : s, p, p + L::kParams);
   }
   template <class T>
   static bool Active(const T* x, const T* p) {

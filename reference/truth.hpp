@@ -34,7 +34,7 @@ class Truth {
   const Matrix<T>& Hessian() { return AllDerivatives().hessian; }
 
   const Spectrum<T>& HessianSpectrum() {
-    return Keep(spectrum_, [&] { return SpectrumOf(Hessian()); });
+    return Keep(spectrum_, [&] { return reference::SpectrumOf(Hessian()); });
   }
   // The PSD matrix nearest to the Hessian in the Frobenius norm.
   const Matrix<T>& Nearest() {
@@ -55,7 +55,7 @@ class Truth {
   const std::vector<Spectrum<T>>& FrameSpectra() {
     return Keep(frame_spectra_, [&] {
       std::vector<Spectrum<T>> spectra;
-      for (const FrameTerm<T>& term : FrameTerms()) spectra.push_back(SpectrumOf(term.hessian));
+      for (const FrameTerm<T>& term : FrameTerms()) spectra.push_back(SpectrumOf(term));
       return spectra;
     });
   }
@@ -72,6 +72,14 @@ class Truth {
     return in_domain_ ? function(x_.data(), p_.data()) : undefined;
   }
   static Matrix<T> Undefined(int m, int n) { return Matrix<T>(m, n, kNaN); }
+
+  // The quicker solver errs by what is small beside |hessian|. A map with long rows, as of a foot
+  // point far outside a short edge, would make that large beside the small eigenvalues.
+  static Spectrum<T> SpectrumOf(const FrameTerm<T>& term) {
+    const T map = FrobeniusNorm(term.map), whole = FrobeniusNorm(Congruence(term.hessian, term.map));
+    const bool magnified = map * map * FrobeniusNorm(term.hessian) > T(1e8) * whole;
+    return magnified ? JacobiSpectrum(term.hessian) : reference::SpectrumOf(term.hessian);
+  }
 
   const Derivatives<T>& AllDerivatives() {
     const int n = energy_.dofs;

@@ -115,6 +115,33 @@ class Fuzz(unittest.TestCase):
                        "--index", "0", program=BROKEN)
             self.assertEqual(done.returncode, 1, path.read_text())
 
+    def test_a_climb_goes_higher_than_draws(self):
+        path = self.folder / "largest.json"
+        words = ("fuzz", "--climb", "distance", "--kernels", ENERGY + "/analytic/f64", "--kernels",
+                 ENERGY + "/nearest/f64", "--families", "deep", "--families", "at_eps",
+                 "--json", str(path))
+        heights = []
+        for more in (("--count", "20000"), ("--count", "20000", "--threads", "1")):
+            done = run(*words, *more)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            result = json.loads(path.read_text())
+            VALIDATOR.validate(result)
+            heights.append(result["largest"])
+        self.assertEqual(heights[0], heights[1])
+        summits = heights[0]["summits"]
+        self.assertEqual([s["kernel"] for s in summits],
+                         [ENERGY + "/analytic/f64", ENERGY + "/nearest/f64"])
+        # The same number of configurations, drawn.
+        fuzz, _ = self.fuzz("--kernels", ENERGY + "/analytic/f64", "--families", "deep",
+                            "--families", "at_eps", "--count", "20000")
+        drawn = max(row["distance"]["max"] for cell in fuzz["cells"] for row in cell["rows"]
+                    if row["distance"])
+        self.assertGreater(summits[0]["value"], drawn)
+        self.assertLess(summits[1]["value"], 1e-12)
+        done = run("fuzz", "--climb", "steepness")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("psd_defect", done.stderr)
+
     def test_every_exhibit_is_caught(self):
         done = run("fuzz", "--zoo")
         self.assertEqual(done.returncode, 0, done.stdout)

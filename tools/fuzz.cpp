@@ -13,6 +13,7 @@
 #include "benchmarks/harness/clock.hpp"
 #include "benchmarks/harness/machine.hpp"
 #include "benchmarks/harness/report.hpp"
+#include "fuzz/climb.hpp"
 #include "fuzz/report.hpp"
 #include "fuzz/zoo.hpp"
 #include "tools/command_line.hpp"
@@ -29,7 +30,7 @@ constexpr double kCheckpointSeconds = 20;
 struct FuzzOptions {
   std::vector<std::string> kernels = {"*"}, families;
   RunOptions run = {"1e6", "1e5", "42", {}, {}, {}, false};
-  std::optional<std::string> json, shard, corpus, from;
+  std::optional<std::string> json, shard, corpus, from, climb;
   double minutes = 0;
   bool resume = false, list = false, zoo = false;
 };
@@ -94,6 +95,14 @@ Done Earlier(const FuzzOptions& options, fuzz::Plan& plan) {
   return done;
 }
 
+// What every result of ours begins with.
+Json Head(std::uint64_t seed, bool partial) {
+  return {{"schema", "definite/1"},    {"protocol", ProtocolHash()},
+          {"command", CommandWords()}, {"machine", DescribeMachine(std::nullopt, false)},
+          {"build", DescribeBuild()},  {"seed", seed},
+          {"partial", partial},        {"rows", Json::array()}};
+}
+
 // A run with what it has so far.
 class FuzzRun {
  public:
@@ -137,15 +146,8 @@ class FuzzRun {
     if (!file_) return;
     const std::size_t all = CellsOf(plan_).size();
     const std::vector<Json> cells = Cells();
-    Json json = {{"schema", "definite/1"},
-                 {"protocol", ProtocolHash()},
-                 {"command", CommandWords()},
-                 {"machine", DescribeMachine(std::nullopt, false)},
-                 {"build", DescribeBuild()},
-                 {"seed", plan_.seed},
-                 {"partial", cells.size() < all},
-                 {"rows", Json::array()},
-                 {"fuzz", ToJson(plan_, all, cells, findings)}};
+    Json json = Head(plan_.seed, cells.size() < all);
+    json["fuzz"] = ToJson(plan_, all, cells, findings);
     file_->Commit(Dump(json, Detail::kWithHistograms));
   }
 
@@ -190,6 +192,36 @@ void WriteCorpus(const std::string& folder, const std::vector<fuzz::Reported>& f
   }
 }
 
+// The largest known of one figure, a climb for each row and family.
+int RunClimb(const FuzzOptions& options) {
+  const auto slope = std::ranges::find(fuzz::AllSlopes(), *options.climb, &fuzz::Slope::name);
+  if (slope == fuzz::AllSlopes().end()) {
+    std::string names;
+    for (const fuzz::Slope& s : fuzz::AllSlopes()) {
+      names += fmt::format("\n  {:<12} {}", s.name, s.meaning);
+    }
+    throw UsageError(fmt::format("--climb '{}': expected one of{}", *options.climb, names));
+  }
+  std::optional<OutputFile> file;
+  if (options.json) file.emplace("--json", *options.json);
+  const auto rows = RowsMatching(options.kernels);
+  const auto families = FamiliesOf(options);
+  const std::uint64_t climbs = rows.size() * families.size();
+  const std::uint64_t evaluations = CeilDivide<std::uint64_t>(options.run.Count(), climbs);
+  Progress progress(isatty(STDERR_FILENO) != 0);
+  progress.Start(fmt::format("climb {}", slope->name), climbs * evaluations);
+  const auto summits = ClimbAll(rows, families, *slope, options.run.Seed(), evaluations,
+                                options.run.Threads(), [&] { progress.Advance(evaluations); });
+  progress.Finish();
+  if (options.json != "-") fmt::print("{}", ToTable(*slope, summits));
+  if (file) {
+    Json json = Head(options.run.Seed(), Interrupted() != 0);
+    json["largest"] = ToJson(*slope, evaluations, summits);
+    file->Commit(Dump(json, Detail::kWithHistograms));
+  }
+  return Interrupted() ? kInterrupted : kOk;
+}
+
 int RunZoo() {
   bool all = true;
   fmt::print("{:<18}{:<48}{:<10}{:<24}{:>6}\n", "exhibit", "what is wrong with it", "breaks",
@@ -218,6 +250,7 @@ int ShowEarlier(const std::string& path) {
 
 int RunFuzz(const FuzzOptions& options) {
   if (options.zoo) return RunZoo();
+  if (options.climb) return RunClimb(options);
   if (options.from) return ShowEarlier(*options.from);
   if (options.list) {
     fmt::print("{}", fuzz::FamilyTable());
@@ -282,6 +315,11 @@ void AddFuzz(CLI::App& app, int& exit_code) {
       ->add_option("--from", options->from,
                    "Only write an earlier result as Markdown: who fails where")
       ->type_name("FILE");
+  command
+      ->add_option("--climb", options->climb,
+                   "Look for the largest of a figure instead, for each row: distance, excess,\n"
+                   "psd_defect, relabelling or rounding; --count is shared out")
+      ->type_name("FIGURE");
   command->add_flag("--zoo", options->zoo,
                     "Hunt filters that are known to be bad, and see that each is caught");
   command->footer(
@@ -295,7 +333,8 @@ void AddFuzz(CLI::App& app, int& exit_code) {
       "  definite fuzz --quick\n"
       "  definite fuzz --kernels '*/signed/*' --families edge_angle --families sliver\n"
       "  definite fuzz --count 1e8 --resume --json fuzz.json\n"
-      "  definite fuzz --minutes 30 --seed 1000 --corpus found");
+      "  definite fuzz --minutes 30 --seed 1000 --corpus found\n"
+      "  definite fuzz --climb relabelling --kernels '*/analytic/f64'");
   command->callback([options, &exit_code] { exit_code = RunFuzz(*options); });
 }
 

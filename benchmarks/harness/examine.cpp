@@ -58,10 +58,11 @@ std::vector<double> ToPacked(const reference::Matrix<T>& m) {
   return a;
 }
 
+// In long double, where no square leaves the range.
 double Norm(std::span<const double> v) {
-  double sum = 0;
-  for (double a : v) sum += a * a;
-  return std::sqrt(sum);
+  long double sum = 0;
+  for (long double a : v) sum += a * a;
+  return static_cast<double>(std::sqrt(sum));
 }
 
 // 1 where nothing had to change and nothing did.
@@ -333,6 +334,12 @@ double Examiner::BoundAt(const double* x, const double* p) const {
   return kRatioBound * energy_->dofs * kUnit / ConditioningAt(*quad_reference_, x, p, *energy_);
 }
 
+// In float128; other units may leave a domain.
+bool Examiner::InDomainAt(std::span<const double> x, std::span<const double> p) const {
+  const std::vector<Quad> quad_x(x.begin(), x.end()), quad_p(p.begin(), p.end());
+  return quad_reference_->in_domain(quad_x.data(), quad_p.data());
+}
+
 double Examiner::OpenAt(const reference::Filter<Quad>& filter, const double* x,
                         const double* p) const {
   reference::Truth<Quad> truth(*quad_reference_, x, p);
@@ -409,7 +416,7 @@ void Examiner::ExamineSymmetries(std::size_t r, const double* x, const double* p
     if (std::isnan(spread)) spread = std::numeric_limits<double>::infinity();
     if (is_relabelling) relabelling = std::max(relabelling, spread);
     if (spread <= 2 * Bound() * (h_norm + norm) || !row.Promises(symmetry.property) ||
-        !definitions.InDomain() ||
+        !definitions.InDomain() || !InDomainAt(new_x, new_p) ||
         std::ranges::find(figures.broken, symmetry.property) != figures.broken.end()) {
       continue;
     }
@@ -451,9 +458,11 @@ void Examiner::ExamineEnergy(const double* x, const double* p, Definitions& defi
   const double worst = std::max(*configuration_.value_rounding, *configuration_.gradient_rounding);
   const auto consistent = [&] {
     const double share = energy_->dofs * kUnit * kRatioBound;
-    return value_error <= share * std::abs(static_cast<double>(truth.Value())) +
+    // What subnormal numbers round.
+    const double least = kRatioBound * std::numeric_limits<double>::denorm_min();
+    return value_error <= share * std::abs(static_cast<double>(truth.Value())) + least +
                               definitions.Around().ValueChange(truth) &&
-           Norm(error) <= share * g_norm + definitions.Around().GradientChange(truth);
+           Norm(error) <= share * g_norm + least + definitions.Around().GradientChange(truth);
   };
   if (!(worst * energy_->dofs * kUnit <= kDegraded) && !consistent()) {
     for (RowFigures& figures : figures_) figures.verdict = Verdict::kInconsistent;

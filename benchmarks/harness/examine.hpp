@@ -121,7 +121,9 @@ class Examiner {
   bool DiffersFromScalar(std::size_t r, std::span<const RowOutput> outputs) const;
   // Whether the digits of the input leave room for f beside the row's definition.
   bool IsOpen(std::size_t r, Packed f, Definitions& definitions) const;
-  // Of another configuration: its bound, and how far its digits leave a definition open.
+  // Of another configuration: whether it is in the domain, its bound, and how far its digits leave a
+  // definition open.
+  bool InDomainAt(std::span<const double> x, std::span<const double> p) const;
   double BoundAt(const double* x, const double* p) const;
   double OpenAt(const reference::Filter<reference::Quad>& filter, const double* x,
                 const double* p) const;

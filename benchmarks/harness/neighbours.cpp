@@ -15,7 +15,7 @@ using reference::Quad;
 using reference::Truth;
 
 constexpr double kMoved = 8 * kUnit;  // of an edge, relative to its longest component
-constexpr int kDirections = 4;        // each taken forwards and backwards
+constexpr int kDirections = 8;        // each taken forwards and backwards
 
 // Beside a border of the domain there is no telling what a neighbour gives.
 double Finite(double change) {
@@ -32,6 +32,7 @@ double Distance(const Matrix& a, const Matrix& b) {
 Neighbours::Neighbours(const EnergyRow& energy, const reference::Energy<Quad>& definition,
                        const double* x, const double* p) {
   const int d = energy.dimension;
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
   const std::vector<Quad> quad_p(p, p + energy.parameters.size());
   const auto at = [d](int vertex, int k) { return static_cast<std::size_t>(vertex * d + k); };
   for (int direction = 0; direction < kDirections; ++direction) {
@@ -45,6 +46,8 @@ Neighbours::Neighbours(const EnergyRow& energy, const reference::Energy<Quad>& d
         for (int k = 0; k < d; ++k) {
           length = std::max(length, std::abs(x[at(to, k)] - x[at(from, k)]));
         }
+        longest = std::max(longest, length);
+        if (length > 0) shortest = std::min(shortest, length);
         for (int k = 0; k < d; ++k) {
           const Quad edge = Quad(x[at(to, k)]) - Quad(x[at(from, k)]);
           moved[at(to, k)] = moved[at(from, k)] + edge +
@@ -54,6 +57,7 @@ Neighbours::Neighbours(const EnergyRow& energy, const reference::Energy<Quad>& d
       truths_.emplace_back(definition, moved.data(), quad_p.data());
     }
   }
+  lost_edge_ = shortest <= kMoved * longest;
 }
 
 double Neighbours::Change(const reference::Filter<Quad>& filter, Truth<Quad>& truth) {
@@ -63,8 +67,9 @@ double Neighbours::Change(const reference::Filter<Quad>& filter, Truth<Quad>& tr
     for (Truth<Quad>& neighbour : truths_) {
       at->second = std::max(at->second, Distance(filter.define(neighbour), definition));
     }
-    // Not one digit is left: a step farther, and it may be of any size.
-    if (at->second >= static_cast<double>(reference::FrobeniusNorm(definition))) {
+    // Not one digit is left: a step farther, and it may be of any size. And beside an edge that is
+    // less than another's rounding, a foot point may be anywhere, which few neighbours show.
+    if (lost_edge_ || at->second >= static_cast<double>(reference::FrobeniusNorm(definition))) {
       at->second = std::numeric_limits<double>::infinity();
     }
   }

@@ -21,7 +21,8 @@ class Neighbours {
              const double* x, const double* p);
 
   // The largest change of a filter's definition from the truth to a neighbour, in the Frobenius
-  // norm; infinite if that is as large as the definition itself.
+  // norm; infinite if that is as large as the definition itself, or if rounding of one edge is as
+  // long as another.
   double Change(const reference::Filter<reference::Quad>& filter,
                 reference::Truth<reference::Quad>& truth);
   // The same of the value and of the gradient (Euclidean).
@@ -29,6 +30,7 @@ class Neighbours {
   double GradientChange(reference::Truth<reference::Quad>& truth);
 
  private:
+  bool lost_edge_ = false;
   std::deque<reference::Truth<reference::Quad>> truths_;
   std::map<const void*, double> changes_;
 };

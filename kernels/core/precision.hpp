@@ -28,6 +28,6 @@ inline constexpr double kTau = 1e-8;
 // In units of the largest edge component: distances below which primitives touch, and edges and
 // areas below which a pair is out of domain, for what hangs on such an edge is far less than a
 // rounding error of the rest.
-inline constexpr double kLeastLength = 0x1p-100, kLeastEdge = 0x1p-56, kLeastArea = 0x1p-56;
+inline constexpr double kLeastLength = 0x1p-100, kLeastEdge = 0x1p-56, kLeastArea = 0x1p-112;
 
 }  // namespace definite

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -10,9 +11,9 @@ namespace definite::reference {
 
 // Bending of a strand of three vertices: psi = mu/2 (omega - omega0)^2, omega the angle by which
 // the strand turns at the middle one, x1 (Shi et al. 2023, Lifted Curls, supplement, section 1;
-// their theta is pi - omega). p = (mu, omega0), omega0 in radians. Domain: the edges have a length,
-// and the sine of omega exceeds 1e-8. The frame: both edges in units of their lengths, which are
-// frozen.
+// their theta is pi - omega). p = (mu, omega0), omega0 in radians. Domain: a component of each edge
+// exceeds 2^-450 in any unit, and the sine of omega 1e-8. The frame: both edges in units of their
+// lengths, which are frozen.
 struct StrandBend {
   static std::string Name() { return "strand/bend/quadratic"; }
   static constexpr int kDofs = 9;
@@ -43,7 +44,9 @@ struct StrandBend {
   }
   template <class T>
   static bool InDomain(const T* x, const T*) {
-    return Sine(x) > T(1e-8);
+    const T least = T(0x1p-450);
+    return Reach(Block(x, 0) - Block(x, 1)) > least && Reach(Block(x, 2) - Block(x, 1)) > least &&
+           Sine(x) > T(1e-8);
   }
   template <class T>
   static bool Active(const T*, const T*) {
@@ -55,6 +58,11 @@ struct StrandBend {
   }
 
  private:
+  template <class T>
+  static T Reach(const Vec3<T>& e) {
+    using std::abs;
+    return std::max({T(abs(e.x)), T(abs(e.y)), T(abs(e.z))});
+  }
   template <class S>
   static S TurningAngle(const Vec3<S>& e0, const Vec3<S>& e1) {
     using std::atan2;
