@@ -13,24 +13,32 @@ namespace definite::fuzz {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // How one filter fared in one family, over all energies.
 struct Fate {
+  std::string family, filter;
   std::uint64_t cases = 0, failed = 0;
   int first = kDecades;  // the least degenerate decade where it failed
   std::map<std::string, std::uint64_t> verdicts;
   std::set<std::string> energies, failing;
+
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Fate, family, filter, cases, failed, first, verdicts, energies,
+                                 failing)
 };
 
-using Fates = std::map<std::string, Fate>;  // by filter
-
-std::map<std::string, Fates> FatesOf(const nlohmann::ordered_json& fuzz) {
-  std::map<std::string, Fates> of_family;
-  for (const auto& cell : fuzz.at("cells")) {
+// By family and filter.
+std::vector<Fate> FatesOf(const Json& cells) {
+  std::map<std::pair<std::string, std::string>, Fate> fates;
+  for (const auto& cell : cells) {
     const auto& energy = cell.at("energy").get_ref<const std::string&>();
     for (const auto& row : cell.at("rows")) {
       const std::string rest =
           row.at("kernels").at(0).get_ref<const std::string&>().substr(energy.size() + 1);
-      Fate& fate = of_family[cell.at("family")][rest.substr(0, rest.find('/'))];
+      const std::string filter = rest.substr(0, rest.find('/'));
+      Fate& fate = fates[{cell.at("family"), filter}];
+      fate.family = cell.at("family");
+      fate.filter = filter;
       for (const auto& [verdict, count] : row.at("verdicts").items()) {
         if (verdict == "out_of_domain") continue;
         fate.cases += count.get<std::uint64_t>();
@@ -43,7 +51,15 @@ std::map<std::string, Fates> FatesOf(const nlohmann::ordered_json& fuzz) {
       }
     }
   }
-  return of_family;
+  std::vector<Fate> all;
+  for (auto& [key, fate] : fates) all.push_back(std::move(fate));
+  return all;
+}
+
+std::uint64_t CountOf(const Json& cells) {
+  std::uint64_t count = 0;
+  for (const auto& cell : cells) count += cell.at("count").get<std::uint64_t>();
+  return count;
 }
 
 std::string From(int decade) { return decade == kDecades - 1 ? "0" : fmt::format("1e-{}", decade); }
@@ -66,10 +82,21 @@ std::string Some(const std::set<std::string>& some, std::size_t all) {
 
 }  // namespace
 
+nlohmann::ordered_json Summary(Json result) {
+  Json& fuzz = result.at("fuzz");
+  if (fuzz.contains("summary")) return result;
+  const Json cells = std::move(fuzz.at("cells"));
+  fuzz["cells"] = Json::array();
+  fuzz["summary"]["configurations"] = CountOf(cells);
+  fuzz["summary"]["fates"] = Json::array();
+  for (const Fate& fate : FatesOf(cells)) {
+    fuzz["summary"]["fates"].emplace_back(nlohmann::json(fate));
+  }
+  return result;
+}
+
 std::string ToMarkdown(const nlohmann::ordered_json& result) {
-  const auto& fuzz = result.at("fuzz");
-  std::uint64_t configurations = 0;
-  for (const auto& cell : fuzz.at("cells")) configurations += cell.at("count").get<std::uint64_t>();
+  const Json summary = Summary(result).at("fuzz").at("summary");
   std::string text = fmt::format(
       "# Where filters fail\n\n"
       "Written by `definite fuzz --from`; do not edit. {} configurations near a degeneracy, seed "
@@ -83,24 +110,29 @@ std::string ToMarkdown(const nlohmann::ordered_json& result) {
       "crowd at small delta as no simulation does. Degraded: far from the filter's own "
       "definition,\n"
       "or larger than four times the Hessian.\n",
-      WithCommas(configurations), fuzz.at("plan").at("seed").dump(),
+      WithCommas(summary.at("configurations").get<std::uint64_t>()),
+      result.at("fuzz").at("plan").at("seed").dump(),
       fmt::join(result.at("command").get<std::vector<std::string>>(), " "));
-  for (const auto& [name, fates] : FatesOf(fuzz)) {
+  std::map<std::string, std::vector<Fate>> of_family;
+  for (const nlohmann::json fate : summary.at("fates")) {
+    of_family[fate.at("family")].push_back(fate.get<Fate>());
+  }
+  for (const auto& [name, fates] : of_family) {
     const auto family = std::ranges::find(AllFamilies(), name, &Family::name);
     text += fmt::format("\n## {}\n\ndelta: {}. {}\n\n", name, family->meaning, family->remedy);
     text += "| filter | fails from delta | share | how | energies |\n|---|--:|--:|---|---|\n";
     std::vector<std::string> passing;
-    for (const auto& [filter, fate] : fates) {
-      if (filter == "none" || fate.cases == 0) continue;
+    for (const Fate& fate : fates) {
+      if (fate.filter == "none" || fate.cases == 0) continue;
       if (fate.failed == 0) {
-        passing.push_back(fmt::format("`{}`", filter));
+        passing.push_back(fmt::format("`{}`", fate.filter));
         continue;
       }
       std::vector<std::string> how;
       for (const auto& [verdict, count] : fate.verdicts) {
         how.push_back(fmt::format("{} {}", verdict, Share(count, fate.cases)));
       }
-      text += fmt::format("| `{}` | {} | {} | {} | {} |\n", filter, From(fate.first),
+      text += fmt::format("| `{}` | {} | {} | {} | {} |\n", fate.filter, From(fate.first),
                           Share(fate.failed, fate.cases), fmt::join(how, ", "),
                           Some(fate.failing, fate.energies.size()));
     }

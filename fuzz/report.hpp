@@ -23,7 +23,10 @@ nlohmann::ordered_json ToJson(const Plan& plan, std::size_t all_cells,
                               const std::vector<nlohmann::ordered_json>& cells,
                               const std::vector<Reported>& findings);
 
-// docs/where-filters-fail.md, of a whole result.
+// A result without its cells, but with what docs/where-filters-fail.md says of them.
+nlohmann::ordered_json Summary(nlohmann::ordered_json result);
+
+// docs/where-filters-fail.md, of a whole result or its summary.
 std::string ToMarkdown(const nlohmann::ordered_json& result);
 
 // What the page draws of a result's "fuzz": for each energy, family and filter, decade by decade,

@@ -62,6 +62,19 @@ class Fuzz(unittest.TestCase):
         parts = [self.fuzz(*SMALL, "--shard", f"{i}/2")[0]["cells"] for i in (1, 2)]
         self.assertEqual(sorted(map(str, parts[0] + parts[1])), sorted(map(str, cells[0])))
 
+    def test_a_summary_says_the_same_without_cells(self):
+        self.fuzz(*SMALL)
+        whole, summary = self.folder / "fuzz.json", self.folder / "summary.json"
+        self.assertEqual(run("fuzz", "--from", str(whole), "--json", str(summary)).returncode, 0)
+        result = json.loads(summary.read_text())
+        VALIDATOR.validate(result)
+        self.assertEqual(result["fuzz"]["cells"], [])
+        pages = [run("fuzz", "--from", str(path)).stdout for path in (whole, summary)]
+        self.assertEqual(*pages)
+        self.assertIn("## sliver", pages[0])
+        for fate in result["fuzz"]["summary"]["fates"]:
+            self.assertEqual(sum(fate["verdicts"].values()), fate["failed"])
+
     def test_another_seed_sees_others(self):
         one, other = (self.fuzz(*SMALL, "--seed", s)[0]["cells"] for s in "12")
         self.assertNotEqual([c["rows"] for c in one], [c["rows"] for c in other])

@@ -237,10 +237,17 @@ int RunZoo() {
   return all ? kOk : kBroken;
 }
 
-int ShowEarlier(const std::string& path) {
+// An earlier result as Markdown, or what of it is worth publishing as JSON.
+int ShowEarlier(const std::string& path, const std::optional<std::string>& json) {
   const Json result = ReadResult("--from", path);
+  std::optional<OutputFile> file;
+  if (json) file.emplace("--json", *json);
   try {
-    fmt::print("{}", fuzz::ToMarkdown(result));
+    if (!file) {
+      fmt::print("{}", fuzz::ToMarkdown(result));
+    } else {
+      file->Commit(Dump(fuzz::Summary(result), Detail::kWithHistograms));
+    }
   } catch (const Json::exception& error) {
     throw UsageError(
         fmt::format("--from '{}': expected a result of definite fuzz: {}", path, error.what()));
@@ -251,7 +258,7 @@ int ShowEarlier(const std::string& path) {
 int RunFuzz(const FuzzOptions& options) {
   if (options.zoo) return RunZoo();
   if (options.climb) return RunClimb(options);
-  if (options.from) return ShowEarlier(*options.from);
+  if (options.from) return ShowEarlier(*options.from, options.json);
   if (options.list) {
     fmt::print("{}", fuzz::FamilyTable());
     return kOk;
@@ -313,7 +320,8 @@ void AddFuzz(CLI::App& app, int& exit_code) {
   command->add_flag("--list", options->list, "Show the families and stop");
   command
       ->add_option("--from", options->from,
-                   "Only write an earlier result as Markdown: who fails where")
+                   "Only write an earlier result as Markdown: who fails where; with --json,\n"
+                   "as a summary without its cells")
       ->type_name("FILE");
   command
       ->add_option("--climb", options->climb,
