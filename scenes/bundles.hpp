@@ -29,12 +29,7 @@ struct Bundles {
                    Of("signed", "analytic")});
     return all;
   }
-  static std::vector<Change> Changes() {
-    std::vector<Change> changes = ChangesOf({});
-    changes.push_back(
-        {"within", "contacts within bundles", false, "the claim is of the crossings"});
-    return changes;
-  }
+  static std::vector<Change> Changes() { return ChangesOf(Settings()); }
   static std::vector<Case> Contrast() {
     return {Of("unsigned_frozen", "none"), Of("unsigned_frozen", "analytic")};
   }
@@ -42,12 +37,13 @@ struct Bundles {
   static bool Fails(const Outcome& o) {
     return o[Figure::kBooms] > 0 || o[Figure::kPops] > 0 || o[Figure::kJitters] > 0;
   }
-  static Trial Make(const Case& c, Draws& draws) {
+  static Cables Settings() {
     Cables cables;
     cables.each = kEach;
     cables.stretch = 0.8 * kEach;
-    return MakeCables(cables, c, draws);
+    return cables;
   }
+  static Trial Make(const Case& c, Draws& draws) { return MakeCables(Settings(), c, draws); }
 };
 
 }  // namespace definite::scenes

@@ -1,5 +1,7 @@
 #include "scenes/cables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -40,57 +42,80 @@ void AddPairs(int segments, int a, int b, int orientation, Contacts& contacts) {
   }
 }
 
-}  // namespace
+// What a scene can have or not.
+struct Term {
+  std::string_view name;
+  std::string_view without, with;       // what removing it, and adding it, means
+  std::string_view why_has, why_lacks;  // empty where that does not occur
+  bool (*is_there)(const Cables& cables);
+  void (*put)(Cables& cables, bool there);
+};
 
-std::span<const CableChange> CableChanges() {
-  static constexpr CableChange kChanges[] = {
-      {{"contact", "no contact", true, "it is what the claim is of"}, [](Cables& c) { c.k = 0; }},
-      {{"stretch", "no springs", true, "they pull the cables against each other"},
-       [](Cables& c) { c.stretch = 0; }},
-      {{"pre_tension", "springs at rest at the start", true, "it keeps springs from compression"},
-       [](Cables& c) { c.rest = 1; }},
-      {{"side_memory", "no memory of sides", true, "without it nothing is ever penetrating"},
-       [](Cables& c) { c.memory = Memory::kNone; }},
-      {{"scene_memory", "a memory for each pair in place of the scene's", true, "the simplest"},
-       [](Cables& c) { c.memory = Memory::kPair; }},
-      {{"damping", "no Rayleigh damping", true, "the paper has it"},
-       [](Cables& c) { c.rayleigh = 0; }},
-      {{"noise", "no noise of the vertices", true, "it makes starts differ"},
-       [](Cables& c) { c.noise = 0; }},
-      {{"both_free", "the lower bundle fixed", true, "the paper pulls both"},
-       [](Cables& c) { c.b_is_fixed = true; }},
-      {{"gravity", "gravity of 9.81 m/s^2", false, "the ends do the pulling"},
-       [](Cables& c) { c.gravity = 9.81; }},
-      {{"bending", "bending, 0.1 k", false, "the paper's strands have it; it changes the statics"},
-       [](Cables& c) { c.bending = 0.1; }},
-      {{"mass_spread", "masses spread by a factor e", false, "equal masses are simpler"},
-       [](Cables& c) { c.mass_spread = 1; }},
-      {{"more_damping", "Rayleigh damping of 0.05 s", false, "the paper has 0.006 s"},
-       [](Cables& c) { c.rayleigh = 0.05; }},
-      {{"cg", "conjugate gradients in place of LDLT", false, "pivots count negative eigenvalues"},
-       [](Cables& c) { c.solver = Solver::kConjugateGradients; }},
-      {{"newton", "5 iterations of Newton's method", false, "the paper solves once a step"},
-       [](Cables& c) { c.iterations = 5; }},
-      {{"line_search", "20 iterations of Newton's method with a line search", false,
-        "the paper has none"},
-       [](Cables& c) {
+constexpr std::string_view kSimplest = "nothing changes without it",
+                           kNotInPaper = "the paper has none";
+constexpr auto kNever = [](const Cables&) { return false; };
+constexpr auto kAlways = [](const Cables&) { return true; };
+
+std::span<const Term> Terms() {
+  static constexpr Term kTerms[] = {
+      {"contact", "no contact", "", "it is what the claim is of", "", kAlways,
+       [](Cables& c, bool) { c.k = 0; }},
+      {"stretch", "no springs", "", "they pull the cables against each other", "", kAlways,
+       [](Cables& c, bool) { c.stretch = 0; }},
+      {"both_free", "the lower bundle rigid", "", "the paper pulls both", "", kAlways,
+       [](Cables& c, bool) { c.b_is_fixed = true; }},
+      {"pre_tension", "springs at rest at the start", "springs 0.9 as long at rest",
+       "the claim shows only under tension", kSimplest, [](const Cables& c) { return c.rest < 1; },
+       [](Cables& c, bool there) { c.rest = there ? 0.9 : 1; }},
+      {"side_memory", "no memory of sides", "the scene remembers sides",
+       "without it nothing is ever penetrating", kSimplest,
+       [](const Cables& c) { return c.memory != Memory::kNone; },
+       [](Cables& c, bool there) { c.memory = there ? Memory::kScene : Memory::kNone; }},
+      {"pair_memory", "", "each pair remembers its side", "", "the scene's memory is simpler",
+       kNever, [](Cables& c, bool) { c.memory = Memory::kPair; }},
+      {"damping", "no Rayleigh damping", "Rayleigh damping of 0.006 s, the paper's", "", kSimplest,
+       [](const Cables& c) { return c.rayleigh > 0; },
+       [](Cables& c, bool there) { c.rayleigh = there ? 0.006 : 0; }},
+      {"more_damping", "", "Rayleigh damping of 0.05 s", "", "the paper has 0.006 s", kNever,
+       [](Cables& c, bool) { c.rayleigh = 0.05; }},
+      {"noise", "no noise of the vertices", "noise of the vertices, 1 mm", "", kSimplest,
+       [](const Cables& c) { return c.noise > 0; },
+       [](Cables& c, bool there) { c.noise = there ? 1e-3 : 0; }},
+      {"gravity", "", "gravity of 9.81 m/s^2, the paper's", "", kSimplest, kNever,
+       [](Cables& c, bool) { c.gravity = 9.81; }},
+      // The paper's 10^4 Pa in a rod 2.7 cm thick have about so much between segments of 0.4 m.
+      {"bending", "", "bending, 0.01 J", "", kSimplest, kNever,
+       [](Cables& c, bool) { c.bending = 0.001; }},
+      {"stiff_bending", "", "bending, 1 J", "", "it changes the statics", kNever,
+       [](Cables& c, bool) { c.bending = 0.1; }},
+      {"mass_spread", "", "masses spread by a factor e", "", kSimplest, kNever,
+       [](Cables& c, bool) { c.mass_spread = 1; }},
+      {"cg", "", "conjugate gradients in place of LDLT", "", "pivots count negative eigenvalues",
+       kNever, [](Cables& c, bool) { c.solver = Solver::kConjugateGradients; }},
+      {"newton", "", "5 iterations of Newton's method", "", "the paper solves once a step", kNever,
+       [](Cables& c, bool) { c.iterations = 5; }},
+      {"line_search", "", "20 iterations of Newton's method with a line search", "", kNotInPaper,
+       kNever,
+       [](Cables& c, bool) {
          c.iterations = 20;
          c.line_search = true;
        }},
-      {{"within", "contacts within bundles", false, "the claim is of the crossings"},
-       [](Cables& c) { c.within_bundles = true; }},
+      {"within", "", "contacts within bundles", "", kSimplest,
+       [](const Cables& c) { return c.within_bundles; },
+       [](Cables& c, bool there) { c.within_bundles = there; }},
   };
-  return kChanges;
+  return kTerms;
 }
 
-std::vector<Change> ChangesOf(std::span<const std::pair<std::string_view, std::string_view>> why) {
+}  // namespace
+
+std::vector<Change> ChangesOf(const Cables& cables) {
   std::vector<Change> changes;
-  for (const CableChange& c : CableChanges()) {
-    if (c.change.name == "within") continue;  // of bundles alone
-    changes.push_back(c.change);
-    for (const auto& [name, reason] : why) {
-      if (name == c.change.name) changes.back().why = reason;
-    }
+  for (const Term& term : Terms()) {
+    if (term.name == "within" && cables.each == 1) continue;
+    const bool there = term.is_there(cables);
+    changes.push_back({term.name, there ? term.without : term.with, there,
+                       there ? term.why_has : term.why_lacks});
   }
   return changes;
 }
@@ -98,10 +123,9 @@ std::vector<Change> ChangesOf(std::span<const std::pair<std::string_view, std::s
 Trial MakeCables(Cables cables, const Case& c, Draws& draws) {
   const double k = cables.k;  // masses and springs stay as they are without contact
   if (!c.change.empty()) {
-    const auto at = std::ranges::find(CableChanges(), c.change,
-                                      [](const CableChange& x) { return x.change.name; });
-    if (at == CableChanges().end()) throw std::runtime_error("no change '" + c.change + "'");
-    at->apply(cables);
+    const auto at = std::ranges::find(Terms(), c.change, &Term::name);
+    if (at == Terms().end()) throw std::runtime_error(fmt::format("no change '{}'", c.change));
+    at->put(cables, !at->is_there(cables));
   }
   const double mass = kFrame * kFrame * k / c.mu;
   Trial trial;

@@ -1,5 +1,7 @@
 #include "scenes/contact.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -40,9 +42,9 @@ const KernelRow& KernelOf(const std::string& energy, std::string_view filter) {
     for (const KernelRow& row : AllKernels()) rows[row.name] = &row;
     return rows;
   }();
-  const std::string name = energy + "/" + std::string(filter) + "/f64";
+  const std::string name = fmt::format("{}/{}/f64", energy, filter);
   if (const auto at = kByName.find(name); at != kByName.end()) return *at->second;
-  throw std::runtime_error("the scene needs the row '" + name + "', and this program has none");
+  throw std::runtime_error(fmt::format("a scene needs the row '{}', and there is none", name));
 }
 
 double TripleProduct(const Contacts& contacts, std::size_t pair, const std::vector<double>& x) {

@@ -46,6 +46,25 @@ Json ToJson(const CaseResult& result) {
   return {{"case", ToJson(result.of)}, {"figures", figures}};
 }
 
+Json ParametersOf(const Trial& trial) {
+  const Model& model = trial.model;
+  const auto free = std::ranges::find(model.scripted, false) - model.scripted.begin();
+  Json energies = Json::object();
+  for (const Elements& term : model.elastic) {
+    std::size_t at = 0;
+    for (const Parameter& p : KernelOf(term.energy, "none").energy->parameters) {
+      energies[term.energy][std::string(p.name)] = term.p[at++];
+    }
+  }
+  return {{"k_newton_per_metre", model.contacts.k},
+          {"eps_metre", model.contacts.eps},
+          {"dt_second", trial.Dt()},
+          {"rayleigh_second", trial.method.rayleigh},
+          {"mass_kilogram", model.mass[static_cast<std::size_t>(free)]},
+          {"frames", trial.frames},
+          {"energies", energies}};
+}
+
 constexpr std::string_view kKinds[] = {"fraction", "median", "each",
                                        "differs",  "ratio",  "no_matter"};
 // Whether two cases are told apart by a p value, without bounds.
@@ -70,6 +89,27 @@ Json ToJson(const Judgement& j) {
 Case CaseFrom(const Json& json) {
   return {json.at("length"),   json.at("filter"), json.at("mu"),
           json.at("substeps"), json.at("level"),  json.at("change")};
+}
+
+// In lines of at most 100 columns, those after the first indented.
+std::string Wrapped(std::string_view text, std::size_t indent) {
+  constexpr std::size_t kColumns = 96;  // and what stands before the first
+  std::string lines;
+  std::size_t column = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    if (column > 0 && column + 1 + end > kColumns) {
+      lines += fmt::format("\n{:<{}}", "", indent);
+      column = indent;
+    } else if (column > 0) {
+      lines += ' ';
+      ++column;
+    }
+    lines += text.substr(0, end);
+    column += end;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines + "\n";
 }
 
 double MedianOf(std::vector<double> values) {
@@ -123,13 +163,13 @@ char Cell(std::uint64_t count, std::uint64_t of) {
 }
 
 std::string MapTable(const std::vector<CaseResult>& map) {
-  std::string table = fmt::format("{:<32}", "failing, tenths of starts; mu");
-  for (const double mu : MapMus()) table += fmt::format("{:>5.2g}", mu);
+  std::string table = fmt::format("{:<34}", "failing, tenths of starts; mu");
+  for (const double mu : MapMus()) table += fmt::format("{:>5g}", mu);
   table += "    time\n";
   std::vector<double> shares, steps;
   for (std::size_t i = 0; i < map.size(); ++i) {
     const bool begins = i % MapMus().size() == 0;
-    if (begins) table += fmt::format("{:<15} {:<16}", map[i].of.length, map[i].of.filter);
+    if (begins) table += fmt::format("{:<15} {:<18}", map[i].of.length, map[i].of.filter);
     const std::string cell(1, Cell(map[i].Count(Figure::kFails), map[i].starts.size()));
     table += fmt::format("{:>5}", cell);
     for (const Outcome& o : map[i].starts) {
@@ -152,22 +192,21 @@ std::string MapTable(const std::vector<CaseResult>& map) {
 
 std::string ToTable(const Reported& reported) {
   const Scene& scene = *reported.scene;
-  std::string table = fmt::format("{}: {}\n", scene.name, scene.claim);
-  if (reported.result) {
+  std::string table = Wrapped(fmt::format("{}: {}", scene.name, scene.claim), 2);
+  if (reported.result && !reported.result->judgements.empty()) {
     std::size_t held = 0;
     for (const Judgement& j : reported.result->judgements) {
       held += j.holds;
       // In one line where it fits.
       const std::string label = j.criterion.of.Label(), what = Describe(j);
       const bool fits = label.size() <= 42 && what.size() <= 29;
-      table += fmt::format("  {:<3} {:<42} {:<29}", j.holds ? "yes" : "NO", label, what);
-      table += fmt::format("{}{}\n", fits ? " " : fmt::format("\n{:<48}", ""), Measured(j));
+      table += fmt::format("  {:<3} {:<42}{}{:<29} {}\n", j.holds ? "yes" : "NO", label,
+                           fits ? " " : "\n      ", what, Measured(j));
     }
-    table += fmt::format(
-        "  {}: {} of {} criteria hold, {} starts\n  differs from the paper: {}\n",
-        NameOf(reported.result->verdict), held, reported.result->judgements.size(),
-        reported.result->cases.empty() ? 0 : reported.result->cases.front().starts.size(),
-        scene.differs);
+    table += fmt::format("  {}: {} of {} criteria hold, {} starts\n",
+                         NameOf(reported.result->verdict), held, reported.result->judgements.size(),
+                         reported.result->cases.front().starts.size());
+    table += "  " + Wrapped(fmt::format("differs from the paper: {}", scene.differs), 4);
   }
   if (reported.ablations) {
     table += fmt::format("  {:<14}{:<36}{:>5}{:>8}  {:<16} {}\n", "change", "case", "before",
@@ -199,9 +238,10 @@ Json ToJson(const Plan& plan, std::size_t all_scenes, const std::vector<Reported
                 {"uses", scene.uses},
                 {"differs", scene.differs}};
     const Case first = scene.contrast().front();
-    const Model model = scene.make(first, plan.seed, 0).model;
-    one["degrees_of_freedom"] = 3 * std::ranges::count(model.scripted, false);
-    if (reported.result) {
+    const Trial trial = scene.make(first, plan.seed, 0);
+    one["degrees_of_freedom"] = 3 * std::ranges::count(trial.model.scripted, false);
+    one["parameters"] = ParametersOf(trial);
+    if (reported.result && !reported.result->judgements.empty()) {
       one["verdict"] = NameOf(reported.result->verdict);
       one["criteria"] = Json::array();
       for (const Judgement& j : reported.result->judgements) one["criteria"].push_back(ToJson(j));
@@ -324,7 +364,8 @@ std::string ToMarkdown(const Json& result) {
 std::string SceneTable() {
   std::string table;
   for (const Scene& scene : AllScenes()) {
-    table += fmt::format("{}\n  {}\n  uses {}\n", scene.name, scene.claim, scene.uses);
+    table += fmt::format("{}\n  {}  {}", scene.name, Wrapped(scene.claim, 4),
+                         Wrapped(fmt::format("uses {}", scene.uses), 4));
   }
   return table;
 }

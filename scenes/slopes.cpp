@@ -1,7 +1,10 @@
 #include "scenes/slopes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace definite::scenes {
 
@@ -9,6 +12,7 @@ namespace {
 
 constexpr double kGravity = 9.81;  // m/s^2
 constexpr int kFrames = 30;
+constexpr double kEdgeLength = 1;  // m
 constexpr double kSeconds = kFrames * kFrame;
 
 // A frame on the slope: down it, along it, and its upward normal.
@@ -34,7 +38,32 @@ Contacts ContactsOf(const Case& c, const std::string& stencil) {
   contacts.vertices = {0, 1, 2, 3};
   contacts.k = kSlopeStiffness;
   contacts.eps = kSlopeEps;
+  // Nothing penetrates at a positive level.
+  contacts.memory = c.level < 0 ? Memory::kScene : Memory::kNone;
   return contacts;
+}
+
+void ApplySlopeChange(const std::string& change, Trial& trial) {
+  Model& model = trial.model;
+  if (change == "contact") {
+    model.contacts.vertices.clear();
+    model.contacts.orientation.clear();
+  } else if (change == "load") {
+    std::ranges::fill(model.load, 0.0);
+  } else if (change == "side_memory") {
+    const bool there = model.contacts.memory != Memory::kNone;
+    model.contacts.memory = there ? Memory::kNone : Memory::kScene;
+  } else if (change == "springs" || change == "damping") {
+    model.elastic = {{"strand/stretch/quadratic", {0, 1}, {kSlopeStiffness, kEdgeLength}}};
+    if (change == "damping") trial.method.rayleigh = 0.006;
+  } else if (change == "cg") {
+    trial.method.solver = Solver::kConjugateGradients;
+  } else if (change == "newton" || change == "line_search") {
+    trial.method.iterations = change == "newton" ? 5 : 20;
+    trial.method.line_search = change == "line_search";
+  } else if (!change.empty()) {
+    throw std::runtime_error(fmt::format("no change '{}'", change));
+  }
 }
 
 void Finish(const Case& c, const Slope& slope, double l, double acceleration, Trial& trial) {
@@ -68,7 +97,6 @@ Trial VertexOnSlope(const Case& c, Draws& draws) {
   // Outside is where the normal points: there the triple product has this sign.
   std::vector<double> above = model.x;
   for (std::size_t i = 0; i < 3; ++i) above[i] = slope.normal[i];
-  model.contacts.orientation = {0};
   model.contacts.orientation = {TripleProduct(model.contacts, 0, above) < 0 ? -1 : 1};
   Finish(c, slope, l, kGravity * std::sin(slope.angle), trial);
   trial.watch.sliders = {vertex};
@@ -79,7 +107,7 @@ Trial EdgeOnSlope(const Case& c, Draws& draws) {
   const Slope slope = DrawSlope(draws);
   const double mass = MassOf(c), l = c.level * kSlopeEps;
   const double load = 2 * kSlopeStiffness * (kSlopeEps - l) / std::cos(slope.angle);
-  constexpr double kHalf = 0.5, kLong = 1000;
+  constexpr double kHalf = kEdgeLength / 2, kLong = 1000;
   Trial trial;
   Model& model = trial.model;
   for (const double side : {-kHalf, kHalf}) {
@@ -92,47 +120,29 @@ Trial EdgeOnSlope(const Case& c, Draws& draws) {
   std::vector<double> above = model.x;
   for (std::size_t i = 0; i < 6; ++i) above[i] += slope.normal[i % 3];
   model.contacts.orientation = {TripleProduct(model.contacts, 0, above) < 0 ? -1 : 1};
-  model.elastic = {{"strand/stretch/quadratic", {0, 1}, {kSlopeStiffness, 2 * kHalf}}};
   Finish(c, slope, l, load * std::sin(slope.angle) / (2 * mass), trial);
   trial.watch.sliders = {0, 1};
   return trial;
 }
 
-std::vector<Change> SlopeChanges() {
-  return {
+std::vector<Change> SlopeChanges(bool is_edge) {
+  std::vector<Change> changes = {
       {"contact", "no contact", true, "it is what the claim is of"},
       {"load", "nothing presses", true, "without it nothing touches"},
-      {"side_memory", "no memory of sides", true, "without it nothing is ever penetrating"},
-      {"springs", "no springs", true, "they hold an edge together"},
-      {"damping", "Rayleigh damping of 0.006 s", false, "nothing elastic moves"},
-      {"cg", "conjugate gradients in place of LDLT", false, "pivots count negative eigenvalues"},
-      {"newton", "5 iterations of Newton's method", false, "the paper solves once a step"},
-      {"line_search", "20 iterations of Newton's method with a line search", false,
-       "the paper has none"},
   };
-}
-
-void ApplySlopeChange(const std::string& change, Trial& trial) {
-  Model& model = trial.model;
-  if (change == "contact") {
-    model.contacts.vertices.clear();
-    model.contacts.orientation.clear();
-  } else if (change == "load") {
-    std::ranges::fill(model.load, 0.0);
-  } else if (change == "side_memory") {
-    model.contacts.memory = Memory::kNone;
-  } else if (change == "springs") {
-    model.elastic.clear();
-  } else if (change == "damping") {
-    trial.method.rayleigh = 0.006;
-  } else if (change == "cg") {
-    trial.method.solver = Solver::kConjugateGradients;
-  } else if (change == "newton") {
-    trial.method.iterations = 5;
-  } else if (change == "line_search") {
-    trial.method.iterations = 20;
-    trial.method.line_search = true;
+  if (is_edge) {
+    changes.push_back(
+        {"springs", "a spring along the free edge", false, "nothing changes with it"});
+    changes.push_back({"damping", "that spring, and Rayleigh damping of 0.006 s", false,
+                       "nothing elastic moves"});
   }
+  changes.push_back(
+      {"cg", "conjugate gradients in place of LDLT", false, "pivots count negative eigenvalues"});
+  changes.push_back(
+      {"newton", "5 iterations of Newton's method", false, "the paper solves once a step"});
+  changes.push_back({"line_search", "20 iterations of Newton's method with a line search", false,
+                     "the paper has none"});
+  return changes;
 }
 
 }  // namespace definite::scenes

@@ -12,12 +12,11 @@ inline constexpr double kSlopeStiffness = 10, kSlopeEps = 0.09;  // N/m, m: the 
 // The slope is drawn within 0.2 to 0.4 radians, its direction is anywhere.
 Trial VertexOnSlope(const Case& c, Draws& draws);
 
-// An edge, its spring at rest, across the middle of a fixed one that slopes; a load presses it to
-// the length level x eps, where it begins at rest.
+// An edge, its two vertices free, across the middle of a fixed one that slopes; a load presses it
+// to the length level x eps, where it begins at rest.
 Trial EdgeOnSlope(const Case& c, Draws& draws);
 
-// 5 Newton iterations, conjugate gradients, damping: what both slopes offer to ablations.
-std::vector<Change> SlopeChanges();
-void ApplySlopeChange(const std::string& change, Trial& trial);
+// What an ablation of a slope removes and adds.
+std::vector<Change> SlopeChanges(bool is_edge);
 
 }  // namespace definite::scenes

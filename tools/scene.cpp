@@ -55,27 +55,24 @@ scenes::Plan ScenePlan(const SceneOptions& options) {
 // The runs that a scene is asked for.
 std::size_t RunsOf(const scenes::Scene& scene, const SceneOptions& options,
                    const scenes::Plan& plan) {
-  std::size_t cases = 0;
+  std::size_t cases = scenes::CasesOf(scene, plan).size();
   if (options.map) cases += scenes::MapCases(scene, plan).size();
   if (options.ablate) cases += scene.contrast().size() * (1 + scene.changes().size());
-  if (!options.map && !options.ablate) cases += scenes::CasesOf(scene, plan).size();
   return cases * plan.starts;
 }
 
 // False if interrupted.
 bool RunOne(const SceneOptions& options, const scenes::Plan& plan, scenes::Reported& reported) {
   const scenes::Scene& scene = *reported.scene;
-  if (options.map) {
-    reported.map = scenes::RunCases(scene, scenes::MapCases(scene, plan), plan);
-    if (!reported.map) return false;
-  }
+  reported.result = scenes::RunScene(scene, plan);
+  if (!reported.result) return false;
   if (options.ablate) {
     reported.ablations = scenes::Ablate(scene, plan);
     if (!reported.ablations) return false;
   }
-  if (options.map || options.ablate) return true;
-  reported.result = scenes::RunScene(scene, plan);
-  return reported.result.has_value();
+  if (!options.map) return true;
+  reported.map = scenes::RunCases(scene, scenes::MapCases(scene, plan), plan);
+  return reported.map.has_value();
 }
 
 nlohmann::ordered_json SceneJson(const scenes::Plan& plan, std::size_t all,
@@ -179,8 +176,9 @@ void AddScene(CLI::App& app, int& exit_code) {
   command->add_option("--filter", options->filter, "Only cases with this filter")
       ->type_name("NAME");
   command->add_flag("--ablate", options->ablate,
-                    "Remove each term of a scene, add those left out (default: 100 starts)");
-  command->add_flag("--map", options->map, "Failing fractions over mu = dt^2 k / m and filters");
+                    "And remove each term of a scene, add those left out (100 starts)");
+  command->add_flag("--map", options->map,
+                    "And failing fractions over mu = dt^2 k / m and filters");
   command
       ->add_option("--record", options->record,
                    "Write the contacts met to FILE.csv, which sweep and advise read")

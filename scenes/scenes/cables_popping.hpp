@@ -50,25 +50,23 @@ struct CablesPopping {
         {Criterion::kDiffers, Figure::kPops, Of("hybrid", "analytic"), 0, 1, frozen("analytic")});
     return all;
   }
-  static std::vector<Change> Changes() {
-    constexpr std::pair<std::string_view, std::string_view> kWhy[] = {
-        {"side_memory", "without it all filters let the cables through"},
-        {"both_free", "a rigid cable is popped through by every filter"}};
-    return ChangesOf(kWhy);
-  }
+  static std::vector<Change> Changes() { return ChangesOf(Settings()); }
   static std::vector<Case> Contrast() {
     return {Of("unsigned_frozen", "gauss_newton"), Of("unsigned_frozen", "analytic")};
   }
   static std::vector<std::string> Lengths() { return {"signed", "unsigned_frozen", "hybrid"}; }
   // What is held jitters, so that jitter is no failure here.
   static bool Fails(const Outcome& o) { return o[Figure::kBooms] > 0 || o[Figure::kPops] > 0; }
-  static Trial Make(const Case& c, Draws& draws) {
+  static Cables Settings() {
     Cables cables;
     cables.segments = 5;
     cables.displacement = 0.6;
     cables.stretch = 1.6;
-    return MakeCables(cables, c, draws);
+    cables.rest = 0.9;
+    cables.memory = Memory::kScene;
+    return cables;
   }
+  static Trial Make(const Case& c, Draws& draws) { return MakeCables(Settings(), c, draws); }
 };
 
 }  // namespace definite::scenes

@@ -9,7 +9,8 @@ struct CablesUnfiltered {
   static constexpr std::string_view kClaim =
       "Without a filter implicit cables fail; with any filter they hold";
   static constexpr std::string_view kUses =
-      "two cables of 3 segments, 12 degrees of freedom: edge-edge contact, and springs that pull; "
+      "two cables of 3 segments, 12 degrees of freedom: edge-edge contact, and springs that pull, "
+      "no memory of sides; "
       "unfiltered is the paper's Hessian of frozen parameters (unsigned_frozen)";
   static constexpr std::string_view kDiffers =
       "two cables in place of two bundles, springs in place of strands; the paper gives no masses";
@@ -41,7 +42,7 @@ struct CablesUnfiltered {
     }
     return all;
   }
-  static std::vector<Change> Changes() { return ChangesOf({}); }
+  static std::vector<Change> Changes() { return ChangesOf(Settings()); }
   static std::vector<Case> Contrast() {
     return {Of("unsigned_frozen", "none", 1), Of("unsigned_frozen", "analytic", 1)};
   }
@@ -49,7 +50,8 @@ struct CablesUnfiltered {
   static bool Fails(const Outcome& o) {
     return o[Figure::kBooms] > 0 || o[Figure::kPops] > 0 || o[Figure::kJitters] > 0;
   }
-  static Trial Make(const Case& c, Draws& draws) { return MakeCables({}, c, draws); }
+  static Cables Settings() { return {}; }
+  static Trial Make(const Case& c, Draws& draws) { return MakeCables(Settings(), c, draws); }
 };
 
 }  // namespace definite::scenes

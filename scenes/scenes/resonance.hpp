@@ -28,7 +28,11 @@ struct Resonance {
     }
     return all;
   }
-  static std::vector<Change> Changes() { return SlopeChanges(); }
+  static std::vector<Change> Changes() {
+    std::vector<Change> changes = SlopeChanges(true);
+    changes.push_back({"side_memory", "the scene remembers sides", false, "nothing penetrates"});
+    return changes;
+  }
   static std::vector<Case> Contrast() { return {Of("none", 1.02, 0.5), Of("analytic", 1.02, 0.5)}; }
   static std::vector<std::string> Lengths() { return {"signed", "unsigned_frozen", "hybrid"}; }
   // Uphill, or a step more than ten times too far.

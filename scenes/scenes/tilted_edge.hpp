@@ -9,8 +9,8 @@ struct TiltedEdge {
   static constexpr std::string_view kClaim =
       "A filtered unsigned length is sticky between edges only where they penetrate";
   static constexpr std::string_view kUses =
-      "edge-edge contact, a load and the spring that holds the free edge together, 6 degrees of "
-      "freedom; case level: l/eps";
+      "edge-edge contact that remembers sides, and a load, 6 degrees of freedom: no spring holds "
+      "the free edge, for nothing parts it; case level: l/eps";
   static constexpr std::string_view kDiffers =
       "the paper shows stickiness in bundles of cables and in cloth";
 
@@ -36,7 +36,12 @@ struct TiltedEdge {
         {Criterion::kEach, Figure::kSlide, Of("unsigned_frozen", "none", 10, 0.5), -1, 0});
     return all;
   }
-  static std::vector<Change> Changes() { return SlopeChanges(); }
+  static std::vector<Change> Changes() {
+    std::vector<Change> changes = SlopeChanges(true);
+    changes.push_back(
+        {"side_memory", "no memory of sides", true, "without it nothing is ever penetrating"});
+    return changes;
+  }
   static std::vector<Case> Contrast() {
     return {Of("unsigned_frozen", "analytic", 1, -0.3), Of("signed", "analytic", 1, -0.3)};
   }

@@ -30,9 +30,8 @@ struct TiltedVertex {
     return all;
   }
   static std::vector<Change> Changes() {
-    std::vector<Change> changes = SlopeChanges();
-    std::erase_if(changes,
-                  [](const Change& c) { return c.name == "springs" || c.name == "damping"; });
+    std::vector<Change> changes = SlopeChanges(false);
+    changes.push_back({"side_memory", "the scene remembers sides", false, "nothing penetrates"});
     return changes;
   }
   static std::vector<Case> Contrast() {
