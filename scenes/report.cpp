@@ -209,14 +209,14 @@ std::string ToTable(const Reported& reported) {
     table += "  " + Wrapped(fmt::format("differs from the paper: {}", scene.differs), 4);
   }
   if (reported.ablations) {
-    table += fmt::format("  {:<14}{:<36}{:>5}{:>8}  {:<16} {}\n", "change", "case", "before",
+    table += fmt::format("  {:<15}{:<36}{:>5}{:>8}  {:<16} {}\n", "change", "case", "before",
                          "after", "difference", "effect");
     for (const Ablation& a : *reported.ablations) {
       const auto percent = [](const CaseResult& r) {
         return 100 * static_cast<double>(r.Count(Figure::kFails)) /
                static_cast<double>(r.starts.size());
       };
-      table += fmt::format("  {}{:<13}{:<36}{:>4.0f}%{:>7.0f}%  [{:+.2f}, {:+.2f}]   {}\n",
+      table += fmt::format("  {}{:<14}{:<36}{:>4.0f}%{:>7.0f}%  [{:+.2f}, {:+.2f}]   {}\n",
                            a.change.is_removed ? '-' : '+', a.change.name, a.with.of.Label(),
                            percent(a.with), percent(a.without), a.difference.low, a.difference.high,
                            NameOf(a.effect));

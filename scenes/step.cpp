@@ -42,6 +42,7 @@ Gathered Gather(const Elements& elements, const std::vector<double>& x) {
 }
 
 double ValueOf(const Elements& elements, const std::vector<double>& x) {
+  if (elements.vertices.empty()) return 0;
   const Gathered g = Gather(elements, x);
   std::vector<double> values(static_cast<std::size_t>(g.count));
   g.energy->value(g.x.data(), elements.p.data(), values.data(), g.count);
@@ -51,6 +52,7 @@ double ValueOf(const Elements& elements, const std::vector<double>& x) {
 }
 
 void AddGradient(const Elements& elements, const std::vector<double>& x, Vector& gradient) {
+  if (elements.vertices.empty()) return;
   const Gathered g = Gather(elements, x);
   std::vector<double> out(g.rows.size());
   g.energy->gradient(g.x.data(), elements.p.data(), out.data(), g.count);

@@ -52,7 +52,8 @@ struct CablesPopping {
   }
   static std::vector<Change> Changes() { return ChangesOf(Settings()); }
   static std::vector<Case> Contrast() {
-    return {Of("unsigned_frozen", "gauss_newton"), Of("unsigned_frozen", "analytic")};
+    return {Of("unsigned_frozen", "gauss_newton"), Of("unsigned_frozen", "analytic"),
+            Of("unsigned_frozen", "gauss_newton", 20)};
   }
   static std::vector<std::string> Lengths() { return {"signed", "unsigned_frozen", "hybrid"}; }
   // What is held jitters, so that jitter is no failure here.
@@ -63,6 +64,7 @@ struct CablesPopping {
     cables.displacement = 0.6;
     cables.stretch = 1.6;
     cables.rest = 0.9;
+    cables.rayleigh = 0.006;
     cables.memory = Memory::kScene;
     return cables;
   }
