@@ -198,10 +198,10 @@ std::string ToTable(const Reported& reported) {
     for (const Judgement& j : reported.result->judgements) {
       held += j.holds;
       // In one line where it fits.
-      const std::string label = j.criterion.of.Label(), what = Describe(j);
-      const bool fits = label.size() <= 42 && what.size() <= 29;
+      const std::string label = j.criterion.of.Label(), what = Describe(j), value = Measured(j);
+      const bool fits = label.size() <= 42 && what.size() <= 29 && value.size() <= 20;
       table += fmt::format("  {:<3} {:<42}{}{:<29} {}\n", j.holds ? "yes" : "NO", label,
-                           fits ? " " : "\n      ", what, Measured(j));
+                           fits ? " " : "\n      ", what, value);
     }
     table += fmt::format("  {}: {} of {} criteria hold, {} starts\n",
                          NameOf(reported.result->verdict), held, reported.result->judgements.size(),
@@ -209,14 +209,14 @@ std::string ToTable(const Reported& reported) {
     table += "  " + Wrapped(fmt::format("differs from the paper: {}", scene.differs), 4);
   }
   if (reported.ablations) {
-    table += fmt::format("  {:<15}{:<36}{:>5}{:>8}  {:<16} {}\n", "change", "case", "before",
+    table += fmt::format("  {:<15}{:<43}{:>5}{:>6} {:<15} {}\n", "change", "case", "before",
                          "after", "difference", "effect");
     for (const Ablation& a : *reported.ablations) {
       const auto percent = [](const CaseResult& r) {
         return 100 * static_cast<double>(r.Count(Figure::kFails)) /
                static_cast<double>(r.starts.size());
       };
-      table += fmt::format("  {}{:<14}{:<36}{:>4.0f}%{:>7.0f}%  [{:+.2f}, {:+.2f}]   {}\n",
+      table += fmt::format("  {}{:<14}{:<43}{:>4.0f}%{:>5.0f}% [{:+.2f}, {:+.2f}]  {}\n",
                            a.change.is_removed ? '-' : '+', a.change.name, a.with.of.Label(),
                            percent(a.with), percent(a.without), a.difference.low, a.difference.high,
                            NameOf(a.effect));
