@@ -36,10 +36,12 @@ Json ToJson(const CaseResult& result, Figure figure) {
           {"of", sorted.size()}};
 }
 
-Json ToJson(const CaseResult& result) {
+// All figures, or events alone.
+Json ToJson(const CaseResult& result, bool events_alone = false) {
   Json figures;
   for (std::size_t i = 0; i < kFigures; ++i) {
     const auto figure = static_cast<Figure>(i);
+    if (events_alone && !InfoOf(figure).is_event) continue;
     figures[std::string(InfoOf(figure).name)] =
         result.Sorted(figure).empty() ? Json() : ToJson(result, figure);
   }
@@ -266,7 +268,7 @@ Json ToJson(const Plan& plan, std::size_t all_scenes, const std::vector<Reported
     if (reported.map) {
       one["map"] = Json::array();
       for (const CaseResult& c : *reported.map) {
-        Json cell = ToJson(c);
+        Json cell = ToJson(c, true);  // maps are large
         std::vector<double> shares, steps;
         for (const Outcome& o : c.starts) {
           shares.push_back(o.kernel_share);

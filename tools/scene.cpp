@@ -151,7 +151,9 @@ int RunScenes(const SceneOptions& options) {
     std::fflush(stdout);
     reported.push_back(std::move(one));
   }
-  if (file) file->Commit(Dump(SceneJson(plan, chosen.size(), reported), Detail::kSummaries));
+  if (file)
+    file->Commit(Dump(SceneJson(plan, chosen.size(), reported),
+                      options.map ? Detail::kWithHistograms : Detail::kSummaries));
   if (reported.size() < chosen.size()) {
     std::fputs("definite: interrupted; the result is partial: the scenes that were complete\n",
                stderr);
