@@ -49,6 +49,7 @@ std::array<Point, 4> Vertices(const Shape& s, std::string_view stencil) {
   }
   if (stencil == "vertex_edge") return {Plus(n, s.a, e0), origin, e0, origin};
   if (stencil == "vertex_vertex") return {origin, n, origin, origin};
+  if (stencil == "segment") return {origin, e0, origin, origin};
   return {e0, origin, e1, origin};
 }
 

@@ -41,6 +41,7 @@ Genes DrawGenes(Draws& draws, std::optional<int> decade = std::nullopt);
 //   vertex_edge   x0 - x1 = a e0 + l n       (e0 = x2-x1)
 //   vertex_vertex x1 - x0 = l n
 //   corner        e0 = x0-x1, e1 = x2-x1: a strand bent at x1
+//   segment       x1 - x0 = e0
 struct Shape {
   double length0, length1;  // of the edges
   double sine;              // of the angle between them
@@ -102,9 +103,9 @@ inline constexpr std::string_view kFaces[] = {"vertex_face"}, kEdgePairs[] = {"e
                                   kContacts[] = {"edge_edge", "vertex_edge", "vertex_face"},
                                   kAllContacts[] = {"edge_edge", "vertex_edge", "vertex_face",
                                                     "vertex_vertex"},
-                                  kStrands[] = {"corner"},
-                                  kEverything[] = {"corner", "edge_edge", "vertex_edge",
-                                                   "vertex_face", "vertex_vertex"};
+                                  kStrands[] = {"corner"}, kSprings[] = {"segment"},
+                                  kEverything[] = {"corner",      "edge_edge",   "segment",
+                                                   "vertex_edge", "vertex_face", "vertex_vertex"};
 
 }  // namespace definite::fuzz
 

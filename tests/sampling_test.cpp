@@ -476,7 +476,7 @@ TEST(Sampling, FillsAsManyCoordinatesAsTheEnergyHas) {
 
 TEST(Sampling, KnowsWhichStencilsADistributionSupports) {
   for (const std::string_view stencil :
-       {"vertex_face", "edge_edge", "vertex_edge", "vertex_vertex", "corner", "hinge"}) {
+       {"vertex_face", "edge_edge", "vertex_edge", "vertex_vertex", "corner", "segment", "hinge"}) {
     EXPECT_TRUE(FindDistribution("paper")->supports(stencil));
     EXPECT_TRUE(FindDistribution("normal")->supports(stencil));
     EXPECT_EQ(FindDistribution("active")->supports(stencil), stencil != "hinge");

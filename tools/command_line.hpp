@@ -90,6 +90,7 @@ void AddExport(CLI::App& app, int& exit_code);
 void AddReport(CLI::App& app, int& exit_code);
 void AddAdvise(CLI::App& app, int& exit_code);
 void AddFuzz(CLI::App& app, int& exit_code);
+void AddScene(CLI::App& app, int& exit_code);
 
 // The words of the command line, as given.
 const std::vector<std::string>& CommandWords();

@@ -80,6 +80,7 @@ int Run(int argc, char** argv) {
   AddReport(app, exit_code);
   AddAdvise(app, exit_code);
   AddFuzz(app, exit_code);
+  AddScene(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version

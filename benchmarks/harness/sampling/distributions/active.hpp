@@ -14,6 +14,7 @@ namespace definite::distributions {
 //   vertex_edge  x0-x1 = beta e + l m, e = x2-x1, m a unit vector normal to e
 //   vertex_vertex  x1-x0 = l m
 //   corner       three iid N(0,1) vertices: a strand is always active
+//   segment      two of those
 //   edge_edge    e0 = x1-x0, e1 = x3-x2, e2 = x2-x0 = a e0 - b e1 + l n
 struct Active {
   static constexpr std::string_view kName = "active";
@@ -24,7 +25,7 @@ struct Active {
 
   static bool Supports(std::string_view stencil) {
     return stencil == "vertex_face" || stencil == "edge_edge" || stencil == "vertex_edge" ||
-           stencil == "vertex_vertex" || stencil == "corner";
+           stencil == "vertex_vertex" || stencil == "corner" || stencil == "segment";
   }
 
   static void DrawCoordinates(const DrawTarget& target, Draws& draws, double* x) {
@@ -37,7 +38,7 @@ struct Active {
     } else if (target.stencil == "vertex_vertex") {
       DrawVertexVertex(draws, x);
     } else {
-      DrawCorner(draws, x);
+      DrawStrand(target, draws, x);
     }
   }
 
@@ -102,8 +103,8 @@ struct Active {
     }
   }
 
-  static void DrawCorner(Draws& draws, double* x) {
-    for (int i = 0; i < 9; ++i) x[i] = draws.Normal();
+  static void DrawStrand(const DrawTarget& target, Draws& draws, double* x) {
+    for (int i = 0; i < target.dofs; ++i) x[i] = draws.Normal();
   }
 
   static void DrawEdgeEdge(Draws& draws, double* x) {
