@@ -52,10 +52,15 @@ inline void HandFusedAnalytic(const double* x, const double* p, double* out, lon
         return MulAdd(a[2], b[2], MulAdd(a[1], b[1], a[0] * b[0]));
       };
       L n[3];
-      cross(e0, e1, n);
-      const L area2 = dot(n, n), aa = dot(e0, e0);
-      const L least = Max(L(1e-16) * (aa * dot(e1, e1)), L(0x1p-112));
-      const auto outside = area2 <= least;
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const L product = e0[k] * e1[j];
+        n[i] = MulAdd(e0[j], e1[k], -product) + MulAdd(-e0[k], e1[j], product);
+      }
+      const L area2 = dot(n, n), aa = dot(e0, e0), bb = dot(e1, e1);
+      const L least = Max(L(1e-16) * (aa * bb), L(1e-16 * 0x1p-224));
+      const auto outside = (area2 <= least) | (Min(aa, bb) <= L(0x1p-112));
       const L area = Sqrt(Max(area2, least)), a = Sqrt(Max(aa, L(0x1p-112)));
       const L ia = L(1.0) / area;
       const L inverse[2] = {L(1.0) / a, a * ia};

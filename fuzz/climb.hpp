@@ -16,7 +16,7 @@ namespace definite::fuzz {
 struct Slope {
   std::string_view name, meaning;
   Depth depth;
-  double (*of)(const KernelRow& row, const RowFigures& figures);  // NaN where there is none
+  double (*of)(const RowFigures& figures);  // NaN where there is none
 };
 std::span<const Slope> AllSlopes();
 

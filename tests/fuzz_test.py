@@ -131,7 +131,7 @@ class Fuzz(unittest.TestCase):
     def test_a_climb_goes_higher_than_draws(self):
         path = self.folder / "largest.json"
         words = ("fuzz", "--climb", "distance", "--kernels", ENERGY + "/analytic/f64", "--kernels",
-                 ENERGY + "/nearest/f64", "--families", "deep", "--families", "at_eps",
+                 ENERGY + "/nearest/f64", "--families", "deep", "--families", "sliver",
                  "--json", str(path))
         heights = []
         for more in (("--count", "20000"), ("--count", "20000", "--threads", "1")):
@@ -146,11 +146,11 @@ class Fuzz(unittest.TestCase):
                          [ENERGY + "/analytic/f64", ENERGY + "/nearest/f64"])
         # The same number of configurations, drawn.
         fuzz, _ = self.fuzz("--kernels", ENERGY + "/analytic/f64", "--families", "deep",
-                            "--families", "at_eps", "--count", "20000")
+                            "--families", "sliver", "--count", "20000")
         drawn = max(row["distance"]["max"] for cell in fuzz["cells"] for row in cell["rows"]
                     if row["distance"])
         self.assertGreater(summits[0]["value"], drawn)
-        self.assertLess(summits[1]["value"], 1e-12)
+        self.assertLess(summits[1]["value"], 1e-5)  # 50 n u over a sine of 1e-8
         done = run("fuzz", "--climb", "steepness")
         self.assertEqual(done.returncode, 2)
         self.assertIn("psd_defect", done.stderr)

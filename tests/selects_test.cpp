@@ -82,7 +82,7 @@ TEST(Selects, GoBothWaysInTheFamiliesOrAReasonIsGiven) {
     const auto at = unreachable.find(name);
     EXPECT_NE(at, unreachable.end()) << name;
     if (at == unreachable.end()) continue;
-    EXPECT_GT(at->second.find("why: "), 0u) << name;
+    EXPECT_TRUE(at->second.starts_with("why: ")) << name;
     unreachable.erase(at);
   }
   for (const auto& [name, why] : unreachable) ADD_FAILURE() << name << ": goes both ways by now";

@@ -25,9 +25,10 @@ inline constexpr double kUnitRoundoff<Lanes<double, W>> = 0x1p-53;
 
 // The sine under which two edges count as parallel; a constant of the protocol.
 inline constexpr double kTau = 1e-8;
-// In units of the largest edge component: distances below which primitives touch, and edges and
-// areas below which a pair is out of domain, for what hangs on such an edge is far less than a
-// rounding error of the rest.
-inline constexpr double kLeastLength = 0x1p-100, kLeastEdge = 0x1p-56, kLeastArea = 0x1p-112;
+// In units of the largest edge component: distances below which primitives touch, and edges below
+// which a pair is out of domain, for what hangs on such an edge is far less than a rounding error
+// of the rest. The area of two edges in the domain is larger than kLeastArea.
+inline constexpr double kLeastLength = 0x1p-100, kLeastEdge = 0x1p-56;
+inline constexpr double kLeastArea = kTau * (kLeastEdge * kLeastEdge);
 
 }  // namespace definite

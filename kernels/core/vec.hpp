@@ -72,6 +72,22 @@ DEFINITE_INLINE Vec3<T> Cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+// The same to a few units in the last place of each component, however much the products cancel
+// (Kahan's difference of products). The plain one is off by a rounding error of the products, which
+// of two almost parallel edges turns the normal towards them: where l is small as well, that is all
+// that is left of it.
+template <class T>
+DEFINITE_INLINE Vec3<T> CarefulCross(const Vec3<T>& a, const Vec3<T>& b) {
+  Vec3<T> r;
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const T product = a[k] * b[j];
+    r[i] = MulAdd(a[j], b[k], -product) + MulAdd(-a[k], b[j], product);
+  }
+  return r;
+}
+
 // Vertex j of a stacked vector of 3-vectors.
 template <class T, int N>
 DEFINITE_INLINE Vec3<T> Vertex(const Vec<T, N>& x, int j) {

@@ -53,8 +53,9 @@ struct ClosestEdges {
     const T s = kKind == Clamped::kHybrid
                     ? Select(Orientation(side) * triple < T(0.0), T(-1.0), T(1.0))
                     : SideOrSignOf(side, triple);
-    // Inside, the length is s |triple|; for the hybrid that is the signed length.
-    SetPlane<Stencil>(plane, edges, s * sign, f);
+    // Inside, the length is s |triple|; for the hybrid that is the signed length, whose normal does
+    // not hang on the sign of a triple product of 0.
+    SetPlane<Stencil>(plane, edges, kKind == Clamped::kHybrid ? Orientation(side) : s * sign, f);
     const auto endpoint = plane.parallel | (plane.beta <= T(0.0)) | (plane.beta >= T(1.0)) |
                           (plane.gamma >= T(0.0)) | (plane.gamma <= T(-1.0));
     SetEndpoint(edges, s, endpoint, f);

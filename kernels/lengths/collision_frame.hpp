@@ -96,10 +96,10 @@ template <class T>
 DEFINITE_INLINE Plane<T> PlaneOf(const Edges<T>& edges) {
   const auto& [e0, e1, e2] = edges;
   Plane<T> plane;
-  const Vec3<T> c = Cross(e0, e1);
+  const Vec3<T> c = CarefulCross(e0, e1);
   const T area2 = Dot(c, c), aa = Dot(e0, e0), bb = Dot(e1, e1);
   const T least = Max(T(kTau * kTau) * (aa * bb), T(kLeastArea * kLeastArea));
-  plane.parallel = area2 <= least;
+  plane.parallel = (area2 <= least) | (Min(aa, bb) <= T(kLeastEdge * kLeastEdge));
   const T area = Sqrt(Max(area2, least)), a = Sqrt(Max(aa, T(kLeastEdge * kLeastEdge)));
   const T inverse_area = T(1.0) / area;
   plane.inverse_a = T(1.0) / a;

@@ -59,7 +59,7 @@ DEFINITE_INLINE MollifiedFrame<T> MollifiedFrameOf(const Vec<T, 12>& x, const T&
   auto [e0, e1, e2] = EdgeEdge::EdgesOf(x);
   e0 = f.scale * (f.lift * e0);
   e1 = f.scale * (f.lift * e1);
-  const Vec3<T> cross = Cross(e0, e1);
+  const Vec3<T> cross = CarefulCross(e0, e1);
   frame.c = Dot(cross, cross);
   frame.slope0 = Cross(e1, cross);
   frame.slope1 = Cross(cross, e0);

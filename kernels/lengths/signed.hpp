@@ -4,7 +4,7 @@
 //
 // Source: Shi & Kim 2023, Eqs. 1-13 and 16-19.
 // Differs: collision_frame.hpp.
-// Domain: sin(e0, e1) > kTau, and |e0 x e1| above kLeastArea. Outside it everything is zero.
+// Domain: sin(e0, e1) > kTau, and both edges longer than kLeastEdge. Outside it everything is zero.
 
 #include "kernels/lengths/collision_frame.hpp"
 
