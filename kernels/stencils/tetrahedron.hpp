@@ -4,6 +4,7 @@
 //
 // Source: Smith, de Goes and Kim 2019, section 2.
 
+#include <span>
 #include <string_view>
 
 #include "kernels/core/vec.hpp"
@@ -15,6 +16,7 @@ struct Tetrahedron {
   static constexpr int kVertices = 4;
   static constexpr int kDofs = 12;
   static constexpr int kDimension = 3;
+  static constexpr std::span<const int> kRelabellings{};  // the rest shape is numbered too
   static constexpr int kTree[] = {0, 1, 0, 2, 0, 3};
 };
 
