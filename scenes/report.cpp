@@ -206,7 +206,9 @@ std::string ToTable(const Reported& reported) {
                            fits ? " " : "\n      ", what, value);
     }
     table += fmt::format("  {}: {} of {} criteria hold, {} starts\n",
-                         NameOf(reported.result->verdict), held, reported.result->judgements.size(),
+                         reported.result->verdict ? NameOf(*reported.result->verdict)
+                                                  : "no verdict, of some of its criteria",
+                         held, reported.result->judgements.size(),
                          reported.result->cases.front().starts.size());
     table += "  " + Wrapped(fmt::format("differs from the paper: {}", scene.differs), 4);
   }
@@ -244,7 +246,7 @@ Json ToJson(const Plan& plan, std::size_t all_scenes, const std::vector<Reported
     one["degrees_of_freedom"] = 3 * std::ranges::count(trial.model.scripted, false);
     one["parameters"] = ParametersOf(trial);
     if (reported.result && !reported.result->judgements.empty()) {
-      one["verdict"] = NameOf(reported.result->verdict);
+      if (reported.result->verdict) one["verdict"] = NameOf(*reported.result->verdict);
       one["criteria"] = Json::array();
       for (const Judgement& j : reported.result->judgements) one["criteria"].push_back(ToJson(j));
       one["cases"] = Json::array();

@@ -155,19 +155,21 @@ std::optional<std::vector<CaseResult>> RunCases(const Scene& scene, const std::v
 std::optional<SceneResult> RunScene(const Scene& scene, const Plan& plan) {
   auto results = RunCases(scene, CasesOf(scene, plan), plan);
   if (!results) return std::nullopt;
-  SceneResult result{&scene, std::move(*results), {}, Verdict::kNot};
+  SceneResult result{&scene, std::move(*results), {}, {}};
   std::size_t held = 0;
   const auto has = [&](const Case& c) {
     return std::ranges::find(result.cases, c, &CaseResult::of) != result.cases.end();
   };
-  for (const Criterion& c : scene.criteria()) {
+  const std::vector<Criterion> criteria = scene.criteria();
+  for (const Criterion& c : criteria) {
     if (!has(c.of) || (c.IsPair() && !has(c.beside))) continue;
     result.judgements.push_back(Judge(c, result.cases));
     held += result.judgements.back().holds;
   }
-  result.verdict = held == result.judgements.size() ? Verdict::kReproduced
-                   : held > 0                       ? Verdict::kPartly
-                                                    : Verdict::kNot;
+  if (result.judgements.size() < criteria.size()) return result;
+  result.verdict = held == criteria.size() ? Verdict::kReproduced
+                   : held > 0              ? Verdict::kPartly
+                                           : Verdict::kNot;
   return result;
 }
 

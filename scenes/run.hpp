@@ -45,7 +45,7 @@ struct SceneResult {
   const Scene* scene = nullptr;
   std::vector<CaseResult> cases;
   std::vector<Judgement> judgements;
-  Verdict verdict = Verdict::kNot;
+  std::optional<Verdict> verdict;  // none where only some of the criteria were asked
 };
 
 // One for each case of the criteria; null if interrupted.

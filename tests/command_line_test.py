@@ -108,7 +108,7 @@ class OnTerminal:
 class Help(unittest.TestCase):
     def test_each_command_has_help_with_examples_within_100_columns(self):
         for command in ([], ["sweep"], ["replay"], ["list"], ["verify"], ["merge"], ["compare"],
-                        ["export"], ["doctor"], ["speed"], ["report"], ["advise"],
+                        ["export"], ["doctor"], ["speed"], ["report"], ["advise"], ["fuzz"],
                         ["scene"]):
             with self.subTest(command=command):
                 done = run(*command, "--help")

@@ -70,6 +70,13 @@ class Scene(unittest.TestCase):
         for ablation in scene["ablations"]:
             self.assertEqual(ablation["removed"], f"  -{ablation['change']} " in done.stdout)
 
+    def test_some_of_the_criteria_make_no_verdict(self):
+        result, done = self.scene("cables_popping", "--starts", "2", "--filter", "analytic")
+        scene = result["scenes"]["scenes"][0]
+        self.assertNotIn("verdict", scene)
+        self.assertGreater(len(scene["criteria"]), 0)
+        self.assertIn("no verdict", done.stdout)
+
     def test_a_map_covers_lengths_filters_and_mu(self):
         result, done = self.scene("tilted_edge", "--starts", "2", "--map")
         cells = result["scenes"]["scenes"][0]["map"]

@@ -95,14 +95,6 @@ Done Earlier(const FuzzOptions& options, fuzz::Plan& plan) {
   return done;
 }
 
-// What every result of ours begins with.
-Json Head(std::uint64_t seed, bool partial) {
-  return {{"schema", "definite/1"},    {"protocol", ProtocolHash()},
-          {"command", CommandWords()}, {"machine", DescribeMachine(std::nullopt, false)},
-          {"build", DescribeBuild()},  {"seed", seed},
-          {"partial", partial},        {"rows", Json::array()}};
-}
-
 // A run with what it has so far.
 class FuzzRun {
  public:
@@ -146,7 +138,7 @@ class FuzzRun {
     if (!file_) return;
     const std::size_t all = CellsOf(plan_).size();
     const std::vector<Json> cells = Cells();
-    Json json = Head(plan_.seed, cells.size() < all);
+    Json json = ResultHead(CommandWords(), plan_.seed, cells.size() < all);
     json["fuzz"] = ToJson(plan_, all, cells, findings);
     file_->Commit(Dump(json, Detail::kWithHistograms));
   }
@@ -215,7 +207,7 @@ int RunClimb(const FuzzOptions& options) {
   progress.Finish();
   if (options.json != "-") fmt::print("{}", ToTable(*slope, summits));
   if (file) {
-    Json json = Head(options.run.Seed(), Interrupted() != 0);
+    Json json = ResultHead(CommandWords(), options.run.Seed(), Interrupted());
     json["largest"] = ToJson(*slope, evaluations, summits);
     file->Commit(Dump(json, Detail::kWithHistograms));
   }

@@ -77,15 +77,9 @@ bool RunOne(const SceneOptions& options, const scenes::Plan& plan, scenes::Repor
 
 nlohmann::ordered_json SceneJson(const scenes::Plan& plan, std::size_t all,
                                  const std::vector<scenes::Reported>& reported) {
-  return {{"schema", "definite/1"},
-          {"protocol", ProtocolHash()},
-          {"command", CommandWords()},
-          {"machine", DescribeMachine(std::nullopt, false)},
-          {"build", DescribeBuild()},
-          {"seed", plan.seed},
-          {"partial", reported.size() < all},
-          {"rows", nlohmann::ordered_json::array()},
-          {"scenes", scenes::ToJson(plan, all, reported)}};
+  nlohmann::ordered_json json = ResultHead(CommandWords(), plan.seed, reported.size() < all);
+  json["scenes"] = scenes::ToJson(plan, all, reported);
+  return json;
 }
 
 // The contacts that all starts of the scene's contrast meet.

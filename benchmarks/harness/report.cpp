@@ -309,6 +309,14 @@ std::string WithCommas(std::uint64_t value) {
   return fmt::format("{},{:03}", WithCommas(value / 1000), value % 1000);
 }
 
+Json ResultHead(const std::vector<std::string>& command, std::uint64_t seed, bool partial,
+                std::optional<double> load_before, bool noisy) {
+  return {{"schema", "definite/1"},   {"protocol", ProtocolHash()},
+          {"command", command},       {"machine", DescribeMachine(load_before, noisy)},
+          {"build", DescribeBuild()}, {"seed", seed},
+          {"partial", partial},       {"rows", Json::array()}};
+}
+
 Json ToJson(const SweepResult& result, const std::vector<std::string>& command, Detail detail) {
   return ToJson({&result, 1}, command, detail);
 }

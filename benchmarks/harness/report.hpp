@@ -3,6 +3,7 @@
 // A sweep's result as JSON (results/schema.json) and as a table for people.
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -18,6 +19,10 @@ enum class Detail { kBrief, kSummaries, kWithHistograms, kCanonical };
 
 nlohmann::ordered_json ToJson(const SweepResult& result, const std::vector<std::string>& command,
                               Detail detail = Detail::kWithHistograms);
+// What a result of any other command begins with: no rows, and room for what it measured.
+nlohmann::ordered_json ResultHead(const std::vector<std::string>& command, std::uint64_t seed,
+                                  bool partial, std::optional<double> load_before = std::nullopt,
+                                  bool noisy = false);
 // The rows of several sweeps, in their order.
 nlohmann::ordered_json ToJson(std::span<const SweepResult> results,
                               const std::vector<std::string>& command, Detail detail);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "benchmarks/harness/machine.hpp"
+#include "benchmarks/harness/report.hpp"
 #include "benchmarks/speed/speed.hpp"
 #include "kernels/core/lanes.hpp"
 
@@ -108,15 +109,8 @@ std::string AssemblyTable(const SpeedResult& result) {
 }  // namespace
 
 Json ToJson(const SpeedResult& result, const std::vector<std::string>& command) {
-  Json json;
-  json["schema"] = "definite/1";
-  json["protocol"] = ProtocolHash();
-  json["command"] = command;
-  json["machine"] = DescribeMachine(result.load_before, result.noisy);
-  json["build"] = DescribeBuild();
-  json["seed"] = result.plan.seed;
-  json["partial"] = result.partial;
-  json["rows"] = Json::array();
+  Json json =
+      ResultHead(command, result.plan.seed, result.partial, result.load_before, result.noisy);
   const Roofline& r = result.roofline;
   Json& speed = json["speed"];
   speed["distribution"] = result.plan.distribution->name;

@@ -64,10 +64,7 @@ std::string Summary(const Result& result) {
 }  // namespace
 
 Json ToJson(const Result& result, const std::vector<std::string>& command) {
-  Json json = {{"schema", "definite/1"},    {"protocol", ProtocolHash()},
-               {"command", command},        {"machine", DescribeMachine(result.load_before, false)},
-               {"build", DescribeBuild()},  {"seed", result.plan.seed},
-               {"partial", result.partial}, {"rows", Json::array()}};
+  Json json = ResultHead(command, result.plan.seed, result.partial, result.load_before);
   Json& verification = json["verification"];
   verification = {{"first", result.plan.first}, {"count", result.plan.count}};
   for (const Distribution* distribution : result.plan.distributions) {
