@@ -13,20 +13,21 @@ const [program, npm] = process.argv.slice(-2).map((path) => resolve(path));
 const { chromium } = createRequire(join(npm, "package.json"))("playwright-core");
 const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "..");
 const signed = "collision/vertex_face/signed/quadratic";
-const charts = ["pareto", "distribution", "relabelling", "degeneracy", "floors", "stages"];
+const charts = ["pareto", "distribution", "relabelling", "degeneracy", "stability", "floors", "stages"];
 let folder, page_file, browser;
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "page-"));
   const run = (...words) => execFileSync(program, words, { stdio: ["ignore", "ignore", "pipe"] });
-  const [sweep, speed, fuzz] = ["sweep.json", "speed.json", "fuzz.json"].map((name) => join(folder, name));
+  const [sweep, speed, fuzz, map] = ["sweep.json", "speed.json", "fuzz.json", "map.json"].map((name) => join(folder, name));
   run("fuzz", "--count", "2000", "--families", "sliver", "--families", "deep", "--json", fuzz, "--kernels", `${signed}/analytic*`, "--kernels", `${signed}/numeric/*`);
   run("sweep", "--count", "2000", "--set", "k=2", "--json", sweep, ...["none/f64", "analytic/f64x8", "split/f64x8", "nearest/f64x8", "gauss_newton/f64", "numeric/f64"]
     .flatMap((name) => ["--kernels", `${signed}/${name}`]));
   run("speed", "--rounds", "3", "--job", "1e4", "--elements", "0", "--json", speed, "--kernels", `${signed}/analytic/f64x8`,
       "--kernels", `${signed}/gauss_newton/f64x8`);
+  run("scene", "cables_popping", "--starts", "2", "--map", "--json", map);
   page_file = join(folder, "report.html");
-  run("report", sweep, speed, fuzz, join(root, "results/published/shi-kim-2023.json"), "--out", page_file);
+  run("report", sweep, speed, fuzz, map, join(root, "results/published/shi-kim-2023.json"), "--out", page_file);
   browser = await chromium.launch({
     executablePath: "/usr/bin/chromium",
     args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
@@ -82,6 +83,12 @@ test("pickers choose the axes", async () => {
   await page.waitForFunction((many) => document.querySelectorAll("#degeneracy .chart svg .role-mark path").length < many, lines);
   await page.selectOption("#degeneracy select[name=error]", "psd_defect");
   await page.waitForFunction(() => document.querySelector("#degeneracy .chart svg")?.textContent.includes("PSD defect"));
+  const cells = () => page.locator("#stability .chart svg .mark-rect.role-mark path").count();
+  const { scenes } = JSON.parse(readFileSync(join(folder, "map.json"), "utf8")).scenes;
+  assert.equal(await cells(), scenes[0].map.length);
+  await page.selectOption("#stability select[name=figure]", "kernel_share");
+  await page.waitForFunction(() => document.querySelector("#stability .chart svg")?.textContent.includes("share of the filter"));
+  assert.equal(await cells(), scenes[0].map.length);
   await page.selectOption("#floors select[name=ring]", "memory");
   assert.ok(await marks(page, "floors") > 1);
   assert.deepEqual(said, []);

@@ -10,6 +10,7 @@
 
 #include "benchmarks/plans/plan.hpp"
 #include "benchmarks/speed/speed.hpp"
+#include "scenes/report.hpp"
 #include "tools/command_line.hpp"
 #include "tools/output_file.hpp"
 #include "tools/page_template.hpp"
@@ -58,10 +59,21 @@ Json ShownOf(const Json& row) {
   return shown;
 }
 
+// What the charts show of scenes: not the runs behind each criterion.
+Json ShownScenes(const Json& scenes) {
+  Json shown = Json::array();
+  for (const Json& scene : scenes.at("scenes")) {
+    shown.push_back(Only(scene, {"name", "claim"}));
+    if (scene.contains("map")) shown.back()["map"] = scene.at("map");
+  }
+  return shown;
+}
+
 // The tables that the command which made the result prints; null if there are none.
 Json TablesOf(const Json& result, const std::string& path) {
   try {
     if (result.contains("speed")) return ToMarkdown(result);
+    if (result.contains("scenes")) return scenes::ToMarkdown(result);
     for (const Plan& plan : AllPlans()) {
       if (result.value("paper", Json()) == plan.name) return plan.markdown(result);
     }
@@ -81,13 +93,14 @@ Json PageDataOf(const std::string& path) {
     }
     shown["rows"] = Json::array();
     for (const Json& row : result.at("rows")) shown["rows"].push_back(ShownOf(row));
+    if (result.contains("scenes")) shown["scenes"] = ShownScenes(result.at("scenes"));
     if (result.contains("fuzz")) shown["maps"] = fuzz::DegeneracyMaps(result.at("fuzz"));
     const Json tables = TablesOf(result, path);
     if (shown["rows"].empty() && !shown.contains("speed") && !shown.contains("maps") &&
         tables.is_null()) {
       throw UsageError(
           fmt::format("FILE '{}': it has nothing to draw; expected a result of sweep, speed, "
-                      "reproduce or fuzz",
+                      "reproduce, fuzz or scene",
                       path));
     }
     return {{"file", std::filesystem::path(path).filename().string()},
@@ -153,7 +166,7 @@ void AddReport(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<ReportOptions>();
   CLI::App* command =
       app.add_subcommand("report", "Draws results: cost against error, as one page for a browser");
-  command->add_option("FILE", options->files, "Results of sweep, speed, reproduce or fuzz")
+  command->add_option("FILE", options->files, "Results of sweep, speed, reproduce, fuzz or scene")
       ->required();
   command->add_option("--out", options->out, "The page, one file that needs no network")
       ->type_name("FILE")
@@ -166,6 +179,8 @@ void AddReport(CLI::App& app, int& exit_code) {
       "  definite reproduce shi-kim-2023 --quick --json result.json\n"
       "  definite report result.json --out report.html\n"
       "  definite report results/published/shi-kim-2023.json speed.json --out report.html\n"
+      "  definite scene cables_popping --map --json map.json\n"
+      "  definite report map.json --out report.html\n"
       "  definite report --history monday.json tuesday.json --out report.html");
   command->callback([options, &exit_code] { exit_code = RunReportCommand(*options); });
 }

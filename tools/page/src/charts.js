@@ -260,3 +260,46 @@ export function degeneracyChart(maps, width, { energy, error, filter }) {
     },
   };
 }
+
+// What can be counted of the starts of a scene, and what the filter takes of a step.
+export const mapFigures = {
+  fails: "starts that fail", booms: "starts that boom", pops: "starts that pop through", penetrates: "starts that end on a wrong side",
+  jitters: "starts that jitter", indefinite: "starts that meet an indefinite system", kernel_share: "share of the filter in the time of a step",
+};
+
+// Where a scene is stable: filters against mu, a panel for each length.
+export function stabilityChart(scene, width, { figure }) {
+  const values = scene.map.map(({ case: c, figures, timing }) => {
+    const found = figures[figure];
+    const fraction = figure === "kernel_share" ? timing.kernel_share : found.count / found.of;
+    return { panel: c.length, filter: c.filter, mu: c.mu, fraction, percent: Math.round(100 * fraction), ...(found && { low: found.low, high: found.high, starts: found.of }),
+             microseconds: timing.ns_per_step / 1000, kernel_share: timing.kernel_share };
+  });
+  const filters = [...new Set(values.map((v) => v.filter))];
+  const labels = 130, many = new Set(values.map((v) => v.mu)).size;
+  const size = panels(width, groups(values).length, { least: 380, labels });
+  const cell = (size.width - (size.columns > 1 ? labels * (size.columns - 1) / size.columns : 0)) / many;
+  return {
+    ...panelled(values, size),
+    spec: {
+      width: cell * many, height: 22 * filters.length,
+      encoding: {
+        x: { field: "mu", type: "ordinal", title: "mu = dt\u00b2 k / m", axis: { labelAngle: 0, labelOverlap: true, format: "~g" } },
+        y: { field: "filter", type: "nominal", sort: filters, title: null },
+        tooltip: [
+          { field: "panel", title: "length" }, { field: "filter" }, { field: "mu" }, { field: "fraction", title: mapFigures[figure], format: ".0%" },
+          ...(figure === "kernel_share" ? [] : [{ field: "low", title: "95 % from", format: ".0%" }, { field: "high", title: "95 % to", format: ".0%" }, { field: "starts" }]),
+          { field: "microseconds", title: "microseconds per step", format: ".3g" }, { field: "kernel_share", title: "the filter's share", format: ".0%" },
+        ],
+      },
+      layer: [
+        { mark: "rect",
+          encoding: { color: { field: "fraction", type: "quantitative", title: mapFigures[figure], legend: { format: "%" },
+                               scale: { domain: [0, 1], range: ["#f7e7a8", "#e69f00", "#d55e00", "#4b1010"] } } } },
+        { mark: { type: "text", fontSize: cell < 24 ? 8 : 10 },
+          encoding: { text: { field: "percent" }, color: { condition: { test: "datum.fraction > 0.5", value: "#fff" }, value: "#222" } } },
+      ],
+    },
+    resolve: { axis: { x: "independent" } },
+  };
+}

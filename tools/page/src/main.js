@@ -1,7 +1,7 @@
 import { parse, View } from "vega";
 import { compile } from "vega-lite";
 import { Handler } from "vega-tooltip";
-import { degeneracyChart, distributionChart, floorChart, historyChart, mapErrors, paretoChart, relabellingChart, ringsOf, stagesChart } from "./charts.js";
+import { degeneracyChart, distributionChart, floorChart, historyChart, mapErrors, mapFigures, paretoChart, relabellingChart, ringsOf, stabilityChart, stagesChart } from "./charts.js";
 import { costs, errors, points, rowsOf } from "./data.js";
 import { csv, fromMarkdown, save } from "./tables.js";
 import { theme } from "./theme.js";
@@ -94,6 +94,14 @@ if (maps.length) {
   const offer = (name, all) => picker(name, all, choice[name], (value) => { choice[name] = value; draw(); });
   tools.prepend(offer("energy", energies.map((e) => [e, e])), offer("error", Object.entries(mapErrors)), offer("filter", ["all", ...filters].map((f) => [f, f])));
 }
+
+const stable = shown.flatMap(({ json }) => json.scenes ?? []).filter((scene) => scene.map);
+stable.forEach((scene, i) => {
+  const choice = { figure: "fails" };
+  const s = section(stable.length > 1 ? `stability-${i + 1}` : "stability", `Where a simulation fails: ${scene.name}`, `${scene.claim}. A cell has, in percent, how many of the scene's random starts fail: mu is the stiffness of contact in units of mass over time step squared.`);
+  const { tools, draw } = chart(s, (width) => stabilityChart(scene, width, choice), `stability-${scene.name}`);
+  tools.prepend(picker("figure", Object.entries(mapFigures), choice.figure, (value) => { choice.figure = value; draw(); }));
+});
 
 if (history) {
   chart(section("history", "One machine over time", "Time per Hessian in each run, in the order of the files, with its 95 % interval. Neighbouring runs differ by what the machine does besides; definite compare decides."), (width) => historyChart(results, width), "history");
