@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 
+#include "benchmarks/harness/sampling/simplex.hpp"
+
 namespace definite::fuzz {
 
 namespace {
@@ -36,7 +38,7 @@ Point Turned(const Point& p, const std::array<double, 4>& q) {
           p[2] - s * ((x * x + y * y) * p[2] - (x * z - w * y) * p[0] - (y * z + w * x) * p[1])};
 }
 
-// The vertices in their own plane.
+// The vertices of a pair or a strand, in a plane of their own.
 std::array<Point, 4> Vertices(const Shape& s, std::string_view stencil) {
   const double cosine = std::sqrt(1 - s.sine * s.sine);
   const Point e0 = {s.length0, 0, 0},
@@ -56,16 +58,61 @@ std::array<Point, 4> Vertices(const Shape& s, std::string_view stencil) {
 Shape InShort(const Shape& s) {
   Shape shape = s;
   for (double* value : {&shape.length0, &shape.length1, &shape.sine, &shape.a, &shape.b, &shape.l,
-                        &shape.eps, &shape.unit}) {
+                        &shape.eps, &shape.unit, &shape.rest_height}) {
     *value = Short(*value);
   }
+  for (double& stretch : shape.stretches) stretch = Short(stretch);
   return shape;
+}
+
+// The edges of the rest shape, in columns: a corner whose later edges lean towards the first, and
+// whose last vertex may be close to the others.
+Matrix3 RestEdges(const Shape& s, const Genes& genes, std::size_t dimension) {
+  Matrix3 rest = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  if (genes.pose != Genes::kAxes) {
+    rest[0][1] = Short(genes.u[3] - 0.5);
+    if (dimension == 3) {
+      rest[0][2] = Short(genes.u[4] - 0.5);
+      rest[1][2] = Short(genes.u[5] - 0.5);
+    }
+  }
+  rest[dimension - 1][dimension - 1] = s.rest_height;
+  return rest;
+}
+
+// Of an upper triangular matrix.
+Matrix3 Inverse(const Matrix3& a) {
+  Matrix3 r{};
+  for (std::size_t i = 3; i-- > 0;) {
+    r[i][i] = 1 / a[i][i];
+    for (std::size_t j = i + 1; j < 3; ++j) {
+      double sum = 0;
+      for (std::size_t k = i + 1; k <= j; ++k) sum += a[i][k] * r[k][j];
+      r[i][j] = -sum / a[i][i];
+    }
+  }
+  return r;
 }
 
 // Half of all configurations leave the side to the sign of l.
 double SideOf(const Genes& genes) {
   const int quarter = static_cast<int>(16 * genes.u[6]) % 4;
   return quarter == 2 ? 1 : quarter == 3 ? -1 : 0;
+}
+
+// What a parameter is in edges of length 1.
+double OfShape(const Shape& shape, const Genes& genes, const DrawTarget& target,
+               const Parameter& parameter) {
+  if (parameter.name == "eps") return shape.eps;
+  if (parameter.name == "side") return SideOf(genes);
+  if (parameter.name.starts_with("rest_")) {
+    const auto digit = [&](std::size_t i) {
+      return static_cast<std::size_t>(parameter.name[i] - '0');
+    };
+    const Matrix3 inverse = Inverse(RestEdges(shape, genes, DimensionOf(target.stencil)));
+    return inverse[digit(5)][digit(6)];
+  }
+  return parameter.value;
 }
 
 // The parameters in a unit of length; false if one that is more than a length cannot be said in it.
@@ -76,14 +123,34 @@ bool ParametersIn(double unit, const Shape& shape, const Genes& genes, const Dra
     double power = 1;
     for (int k = 0; k < std::abs(parameter.length_power); ++k) power *= unit;
     if (parameter.length_power < 0) power = 1 / power;
-    const double value = parameter.name == "eps"    ? shape.eps
-                         : parameter.name == "side" ? SideOf(genes)
-                                                    : parameter.value;
-    *p = value * power;
-    if (parameter.length_power > 1 && !std::isnormal(*p)) said = false;
+    *p = OfShape(shape, genes, target, parameter) * power;
+    const bool is_zero = parameter.length_power < 0 && *p == 0;
+    const bool is_length = parameter.length_power == 0 || parameter.length_power == 1;
+    if (!is_length && !is_zero && !std::isnormal(*p)) said = false;
     ++p;
   }
   return said;
+}
+
+// F times the rest shape, F = U diag(stretches) V^T; but for turned ones along the axes.
+// Coordinates are not rounded further: of a sliver little would be left of F.
+void PoseSimplex(const Shape& shape, const Genes& genes, std::size_t dimension, double unit,
+                 double* x) {
+  const auto turn = [&](std::size_t first) {
+    std::array<double, 4> q;
+    for (std::size_t i = 0; i < 4; ++i) q[i] = NormalQuantile(genes.u[first + i]);
+    return TurnOf(q, dimension);
+  };
+  Matrix3 f{};
+  for (std::size_t i = 0; i < dimension; ++i) {
+    f[i][i] = shape.stretches[i + 1 < dimension ? i : 2];
+  }
+  if (genes.pose == Genes::kTurned) f = Product(Product(turn(8), f), turn(4));
+  std::array<double, 12> vertices;
+  PutVertices(Product(f, RestEdges(shape, genes, dimension)), dimension, vertices.data());
+  for (std::size_t i = 0; i < dimension * (dimension + 1); ++i) {
+    *x++ = (vertices[i] + shape.shift[i % dimension]) * unit;
+  }
 }
 
 Distribution DistributionOf(const Family& family, std::optional<int> decade,
@@ -136,6 +203,8 @@ Shape OrdinaryShape(const Genes& genes) {
   shape.l = (2 * u[7] - 1) * shape.eps;
   shape.unit = 1;
   shape.shift = {};
+  shape.stretches = {1 + u[0], 0.75 + 0.5 * u[1], 0.5 + 0.5 * u[2]};
+  shape.rest_height = 1;
   return shape;
 }
 
@@ -144,6 +213,9 @@ void Pose(const Shape& given, const Genes& genes, const DrawTarget& target, doub
   // Where a parameter cannot be said in such units, the configuration stays in its own.
   const double unit = ParametersIn(shape.unit, shape, genes, target, p) ? shape.unit : 1;
   if (unit != shape.unit) ParametersIn(unit, shape, genes, target, p);
+  if (IsSimplex(target.stencil)) {
+    return PoseSimplex(shape, genes, DimensionOf(target.stencil), unit, x);
+  }
   const auto& u = genes.u;
   const std::array<double, 4> turn = {NormalQuantile(u[8]), NormalQuantile(u[9]),
                                       NormalQuantile(u[10]), NormalQuantile(u[11])};

@@ -34,8 +34,8 @@ inline constexpr int kDecades = 17;  // of delta, the last of them 0
 // Log-uniform delta, but 0 in one of 17; or, of one decade, 10^-(decade+1) to 10^-decade (16: 0).
 Genes DrawGenes(Draws& draws, std::optional<int> decade = std::nullopt);
 
-// Two primitives in contact, or a strand, before they are posed: edges e0 and e1 in a plane, with
-// an angle between them. As the stencils have it, with n the plane's normal:
+// Two primitives in contact, a strand or a simplex, before they are posed: edges e0 and e1 in a
+// plane, with an angle between them. As the stencils have it, with n the plane's normal:
 //   vertex_face   e2 = a e0 + b e1 + l n     (e0 = x1-x2, e1 = x3-x2, e2 = x0-x2)
 //   edge_edge     e2 = a e0 - b e1 + l n     (e0 = x1-x0, e1 = x3-x2, e2 = x2-x0)
 //   vertex_edge   x0 - x1 = a e0 + l n       (e0 = x2-x1)
@@ -48,8 +48,10 @@ struct Shape {
   bool obtuse;
   double a, b;  // the foot point, in edges
   double l, eps;
-  double unit;                  // all lengths times this
-  std::array<double, 3> shift;  // added to every vertex, in edges of length 1
+  double unit;                      // all lengths times this
+  std::array<double, 3> shift;      // added to every vertex, in edges of length 1
+  std::array<double, 3> stretches;  // the last one at will negative; a triangle has the outer two
+  double rest_height;               // of the last vertex over the others
 };
 
 // Nothing degenerate: edges from 1/2 to 2, an angle of 30 to 150 degrees, the foot point inside,
@@ -104,8 +106,11 @@ inline constexpr std::string_view kFaces[] = {"vertex_face"}, kEdgePairs[] = {"e
                                   kAllContacts[] = {"edge_edge", "vertex_edge", "vertex_face",
                                                     "vertex_vertex"},
                                   kStrands[] = {"corner"}, kSprings[] = {"segment"},
-                                  kEverything[] = {"corner",      "edge_edge",   "segment",
-                                                   "vertex_edge", "vertex_face", "vertex_vertex"};
+                                  kSimplices[] = {"tetrahedron", "triangle"},
+                                  kTetrahedra[] = {"tetrahedron"},
+                                  kEverything[] = {"corner",      "edge_edge",    "segment",
+                                                   "tetrahedron", "triangle",     "vertex_edge",
+                                                   "vertex_face", "vertex_vertex"};
 
 }  // namespace definite::fuzz
 

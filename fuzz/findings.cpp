@@ -12,6 +12,7 @@
 #include "benchmarks/harness/promises.hpp"
 #include "benchmarks/harness/report.hpp"
 #include "benchmarks/harness/sampling/batch.hpp"
+#include "benchmarks/harness/sampling/recorded.hpp"
 
 namespace definite::fuzz {
 
@@ -207,13 +208,11 @@ std::string CorpusText(const std::string& command, const std::string& what, cons
   for (std::size_t j = 0; j < energy.parameters.size(); ++j) {
     settings += fmt::format(" {}={}", energy.parameters[j].name, HexFloat(example.p[j]));
   }
-  std::vector<std::string> names, numbers;
-  for (std::size_t i = 0; i < example.x.size(); ++i) {
-    names.push_back(fmt::format("{}{}", "xyz"[i % 3], i / 3));
-    numbers.push_back(HexFloat(example.x[i]));
-  }
+  std::vector<std::string> numbers;
+  for (const double x : example.x) numbers.push_back(HexFloat(x));
   return fmt::format("# found by: {}\n# {} was not {}\n# {}\n{}\n{}\n", command, energy.name, what,
-                     settings, fmt::join(names, ","), fmt::join(numbers, ","));
+                     settings, fmt::join(CoordinateNames(energy.dofs, energy.dimension), ","),
+                     fmt::join(numbers, ","));
 }
 
 }  // namespace definite::fuzz

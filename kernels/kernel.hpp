@@ -43,7 +43,7 @@ enum class Set {
 
 // Which part of a set; a filter asks only for what it keeps.
 enum class Part {
-  kCurvature,  // psi'' alone: what Gauss-Newton keeps
+  kCurvature,  // without what second derivatives of lengths or residuals add: Gauss-Newton's
   kPositive,   // the modes that may be positive
   kAll,
 };
@@ -148,10 +148,18 @@ concept OffersSet = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>
   E::template HessianModes<kSet, Part::kAll>(x, p);
 };
 
-// An energy that is a penalty of one length, and so has a curvature term of its own.
+// An energy that is a penalty of lengths or a sum of squares, and so has a curvature term of its
+// own.
 template <class E, class T>
 concept OffersCurvature = requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
   E::template HessianModes<Set::kFrame, Part::kCurvature>(x, p);
+};
+
+// An energy that is a penalty of one length: its curvature is one mode.
+template <class E, class T>
+concept IsPenalty = OffersCurvature<E, T> &&
+    requires(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
+  requires decltype(E::template HessianModes<Set::kFrame, Part::kCurvature>(x, p))::kCount == 1;
 };
 
 // Whether an energy is one of the few that all baselines and outputs are run on: they would give

@@ -41,8 +41,9 @@ struct Energy {
   double (*conditioning)(const T* x, const T* p);
   T (*value)(const T* x, const T* p);
   Derivatives<T> (*derivatives)(const T* x, const T* p);
-  T (*length)(const T* x, const T* p);             // s, a scalar s(x) that psi is a penalty of
-  Matrix<T> (*curvature)(const T* x, const T* p);  // psi''(s) grad s grad s^T, dofs x dofs
+  T (*length)(const T* x, const T* p);  // s, a scalar s(x) that psi is a penalty of
+  // psi''(s) grad s grad s^T, or the sum of grad r grad r^T over residuals, dofs x dofs.
+  Matrix<T> (*curvature)(const T* x, const T* p);
   // The terms that sum to the Hessian; the first one's map is S, c = S x with weights frozen at x.
   std::vector<FrameTerm<T>> (*frame)(const T* x, const T* p);
 };
@@ -50,6 +51,7 @@ struct Energy {
 // What an energy must define, in plain form, for any scalar S (T itself or dual numbers over it).
 // Optional:
 //   Length(x, p), and Penalty(s, p) if psi = Penalty(Length), not a penalty of other things too;
+//   Residuals(x, p), if psi is half of the sum of their squares;
 //   kFrameDofs; FrameAt(x, at, p), the frame coordinates c of x with their weights frozen at `at`
 //   (T); FrameValue(c, at, p), psi of them, of which the Hessian loses nothing by frozen weights;
 //   RemainderValue(c, at, p), the part of psi that loses something, a minimum over the weights, and
@@ -110,6 +112,14 @@ Energy<T> MakeEnergy() {
       const Derivatives<T> s = Unpack(E::Length(Variables<E::kDofs>(x).data(), p));
       const auto psi = E::Penalty(Variables<1>(&s.value)[0], p);
       return Outer(psi.hessian[0], s.gradient);
+    };
+  }
+  if constexpr (requires(const T* x) { E::Residuals(x, x); }) {
+    row.curvature = [](const T* x, const T* p) {
+      const Matrix<T> slopes = Jacobian(E::Residuals(Variables<E::kDofs>(x).data(), p));
+      Matrix<T> identity(slopes.rows, slopes.rows);
+      for (int i = 0; i < slopes.rows; ++i) identity(i, i) = T(1);
+      return Congruence(identity, slopes);
     };
   }
   if constexpr (requires { E::kFrameDofs; }) {

@@ -131,10 +131,19 @@ T Magnitude(const T& lambda) {
   return lambda < 0 ? T(-lambda) : lambda;
 }
 
-// The PSD matrix nearest in the Frobenius norm (Higham 1988): negative eigenvalues become 0.
+// The PSD matrix nearest in the Frobenius norm (Higham 1988): negative eigenvalues become 0, and,
+// of a matrix that is known to have at most `positive` others, all but so many of the largest:
+// beside exact zeros the rest would be their rounding.
+template <class T>
+Matrix<T> NearestPsd(const Spectrum<T>& spectrum, int positive) {
+  const int n = spectrum.values.rows;
+  const T least = positive > 0 ? spectrum.values[std::max(0, n - positive)]
+                               : std::numeric_limits<T>::infinity();
+  return MapSpectrum(spectrum, [&](const T& l) { return l < 0 || l < least ? T(0) : l; });
+}
 template <class T>
 Matrix<T> NearestPsd(const Spectrum<T>& spectrum) {
-  return MapSpectrum(spectrum, Clamp<T>);
+  return NearestPsd(spectrum, spectrum.values.rows);
 }
 
 }  // namespace definite::reference

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -38,7 +39,7 @@ class Truth {
   }
   // The PSD matrix nearest to the Hessian in the Frobenius norm.
   const Matrix<T>& Nearest() {
-    return Keep(nearest_, [&] { return NearestPsd(HessianSpectrum()); });
+    return Keep(nearest_, [&] { return NearestPsd(HessianSpectrum(), MostPositive()); });
   }
   // Gauss-Newton: psi''(s) grad s grad s^T. Throws std::logic_error if the energy is not a penalty
   // of a scalar.
@@ -71,12 +72,21 @@ class Truth {
     if (!function) throw std::logic_error(energy_.name + " has no such quantity");
     return in_domain_ ? function(x_.data(), p_.data()) : undefined;
   }
+  // How many positive eigenvalues the Hessian may have. Pulled back by one map it has no more than
+  // in the frame, where it has none that translations make 0.
+  int MostPositive() {
+    if (!energy_.frame || FrameTerms().size() != 1) return energy_.dofs;
+    const Matrix<T>& values = FrameSpectra()[0].values;
+    return static_cast<int>(std::count_if(values.entries.begin(), values.entries.end(),
+                                          [](const T& value) { return !(value <= 0); }));
+  }
   static Matrix<T> Undefined(int m, int n) { return Matrix<T>(m, n, kNaN); }
 
   // The quicker solver errs by what is small beside |hessian|. A map with long rows, as of a foot
   // point far outside a short edge, would make that large beside the small eigenvalues.
   static Spectrum<T> SpectrumOf(const FrameTerm<T>& term) {
-    const T map = FrobeniusNorm(term.map), whole = FrobeniusNorm(Congruence(term.hessian, term.map));
+    const T map = FrobeniusNorm(term.map),
+            whole = FrobeniusNorm(Congruence(term.hessian, term.map));
     const bool magnified = map * map * FrobeniusNorm(term.hessian) > T(1e8) * whole;
     return magnified ? JacobiSpectrum(term.hessian) : reference::SpectrumOf(term.hessian);
   }

@@ -31,7 +31,8 @@ TEST(Catalogue, ListsThePromises) {
       << "If the change is meant: definite list --promises > kernels/PROMISES.txt";
 }
 
-TEST(Catalogue, HasAtMostEightHundredRows) { EXPECT_LE(AllKernels().size(), 800u); }
+// Each takes about half a second to build.
+TEST(Catalogue, HasAtMostTwelveHundredRows) { EXPECT_LE(AllKernels().size(), 1200u); }
 
 TEST(Catalogue, HasEachNameOnce) {
   std::set<std::string> names;

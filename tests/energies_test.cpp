@@ -231,6 +231,24 @@ std::vector<Numbers> DegenerateShapes(std::string_view stencil) {
   if (stencil == "vertex_vertex" || stencil == "segment") {
     return {{0, 0, 0, 0, 0, 0}, {1, 2, 3, 1, 2, 3}, {1e300, 0, 0, 1e300, 0, 0}};  // one point
   }
+  if (stencil == "triangle") {
+    return {{0, 0, 1e40, 0, 0, 1e40},  // stretched beyond 2^100
+            {0, 0, 0, -1e300, 1, 0},   // one edge alone
+            {1, 1, 1, 1e200, 1, 1},    // and flat
+            {0, 0, 1, 0, 2, 0},        // flat
+            {0, 0, 1, 0, 0, -1},       // turned over
+            {0, 0, 1, 0, 1, 1e-9},     // nearly flat
+            {1, 2, 1, 2, 1, 2}};       // one point
+  }
+  if (stencil == "tetrahedron") {
+    return {{0, 0, 0, 1e40, 0, 0, 0, 1e40, 0, 0, 0, 1e40},  // stretched beyond 2^100
+            {0, 0, 0, 0, -1e300, 0, 1, 0, 0, 0, 0, 1},      // one edge alone
+            {1, 1, 1, 1e200, 1, 1, 1, 1, 1, 2, 2, 2},       // and flat
+            {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0},           // flat
+            {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -1},          // turned over
+            {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1e-9},        // nearly flat
+            {1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3}};          // one point
+  }
   return {{-1, 0, 0, 0, 0, 0, 2, 0, 0},    // straight
           {1, 0, 0, 0, 0, 0, 2, 1e-9, 0},  // folded
           {0, 0, 0, 0, 0, 0, 2, 1, 0},     // an edge of length zero

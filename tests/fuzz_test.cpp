@@ -84,8 +84,8 @@ TEST(Symmetries, LeaveAHessianAsItIs) {
                 1e-12 / c.conditioning * FrobeniusNorm(h))
           << energy.name << " " << PropertyName(symmetry.property);
     }
-    EXPECT_EQ(seen[Property::kRigidMotion], 2) << energy.name;
-    EXPECT_GE(seen[Property::kRelabelling], 1) << energy.name;
+    EXPECT_EQ(seen[Property::kRigidMotion], energy.dimension - 1) << energy.name;
+    EXPECT_EQ(seen[Property::kRelabelling] > 0, !energy.relabellings.empty()) << energy.name;
     EXPECT_LE(OnTranslations(energy, h), 1e-12 / c.conditioning * FrobeniusNorm(h));
   }
 }

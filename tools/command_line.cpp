@@ -177,7 +177,7 @@ void AddDistributionOption(CLI::App& command, std::string& name) {
   }
   command
       .add_option("--distribution", name,
-                  fmt::format("{}, fuzz/FAMILY, .csv or .jsonl (default: {})", known, name))
+                  fmt::format("{},\nfuzz/FAMILY, .csv or .jsonl (default: {})", known, name))
       ->type_name("NAME");
 }
 

@@ -323,7 +323,10 @@ void Examiner::ExamineRow(std::size_t r, const double* x, const double* p, const
     figures.verdict = Verdict::kNonPsd;
     breaks(Property::kPsd);
   }
-  if (norm == 0 && h_norm != 0) figures.verdict = Verdict::kSilentZero;
+  // Some Hessians have no positive part.
+  if (norm == 0 && h_norm != 0 && !(NormOf(definitions.Of(*quad_filters_[r])) == 0)) {
+    figures.verdict = Verdict::kSilentZero;
+  }
   if (depth.spectrum) {
     ExamineSpectrum(r, exact, output, definitions);
     ExamineSymmetries(r, x, p, exact, output, definitions);

@@ -1,6 +1,7 @@
 #include "benchmarks/verify/case.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "benchmarks/harness/sampling/batch.hpp"
@@ -94,6 +95,7 @@ const Matrix& Case::Definition(std::string_view filter) {
 }
 
 double Case::Length() const {
+  if (!subject_.reference->length) return std::numeric_limits<double>::infinity();
   return static_cast<double>(subject_.reference->length(InQuad(x_).data(), InQuad(p_).data()));
 }
 

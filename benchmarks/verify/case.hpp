@@ -58,7 +58,7 @@ class Case {
   // What holds.
   reference::Truth<Quad>& Truth() { return truth_; }
   const Matrix& Definition(std::string_view filter);
-  double Length() const;
+  double Length() const;  // infinite where psi is not a penalty of one
   double Conditioning() const { return conditioning_; }
 
   // An error in units of what rounding may do to a number of size `scale`, kRatioBound n u scale /

@@ -37,9 +37,24 @@ PackedSym<double, N> ClampInFloat(const PackedSym<double, N>& h) {
   return result;
 }
 
+// What blocks over principal stretches give, clamped each and pulled back: `scaling` over the
+// u_i v_i^T, and for each pair j < k, in their order, [[a, b], [b, a]] over u_j v_k^T and u_k
+// v_j^T.
+template <int D, int P>
+PackedSym<double, D*(D + 1)> ClampStretchBlocks(const Vec<double, D> (&u)[D],
+                                                const Vec<double, D> (&v)[D],
+                                                const PackedSym<double, D>& scaling,
+                                                const Vec<double, 2> (&pairs)[P],
+                                                const double (&map)[D * D][D * (D + 1)]) {
+  PackedSym<double, D*(D + 1)> result;
+  internal::ClampStretchBlocks<D>(u->v, v->v, scaling.a, pairs->v, map[0], result.a);
+  return result;
+}
+
 // map^T (sum_m lambda[m] v[m] v[m]^T) map, one outer product after the other and then the products
 // of the reduced frame, as one writes them in Eigen. Where `eigenvalues` is given, the eigenvalues
-// of the sum are mapped first. F x D: 3 x 6, 6 x 9, 9 x 12.
+// of the sum are mapped first. F x D: 3 x 6, 4 x 6, 6 x 9,
+// 9 x 12.
 template <int F, int D>
 PackedSym<double, D> PullBackInEigen(const double* lambda, const Vec<double, F>* v, int count,
                                      const double (&map)[F][D], EigenvalueMap eigenvalues) {

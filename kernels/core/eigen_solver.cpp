@@ -120,6 +120,41 @@ void PullBack(const double* lambda, const double* modes, int count, const double
   Pack(EigenMatrix<D>(s.transpose() * h * s), result);
 }
 
+template <int D>
+void ClampStretchBlocks(const double* u, const double* v, const double* scaling,
+                        const double* pairs, const double* map, double* result) {
+  constexpr int kF = D * D;
+  // Over the u_a v_b^T, the last index of a and b first.
+  EigenMatrix<kF> h = EigenMatrix<kF>::Zero();
+  const EigenMatrix<D> stretches = MapEigenvaluesOf(Unpack<D>(scaling), ClampToPsd);
+  for (int i = 0; i < D; ++i) {
+    for (int j = 0; j <= i; ++j) h(i * (D + 1), j * (D + 1)) = stretches(i, j);
+  }
+  for (int j = 0; j < D; ++j) {
+    for (int k = j + 1; k < D; ++k, pairs += 2) {
+      EigenMatrix<2> block;
+      block << pairs[0], pairs[1], pairs[1], pairs[0];
+      block = MapEigenvaluesOf(block, ClampToPsd);
+      const int first = k * D + j, second = j * D + k;
+      h(first, first) = block(0, 0);
+      h(second, second) = block(1, 1);
+      h(first, second) = h(second, first) = block(1, 0);
+    }
+  }
+  h = EigenMatrix<kF>(h.template selfadjointView<Eigen::Lower>());
+  const Eigen::Map<const EigenMatrix<D>> left(u), right(v);
+  EigenMatrix<kF> basis;  // the u_a v_b^T, column by column
+  for (int b = 0; b < D; ++b) {
+    for (int a = 0; a < D; ++a) {
+      for (int j = 0; j < D; ++j) {
+        basis.template block<D, 1>(j * D, b * D + a) = right(j, b) * left.col(a);
+      }
+    }
+  }
+  const Eigen::Map<const Eigen::Matrix<double, kF, kF + D, Eigen::RowMajor>> s(map);
+  Pack(EigenMatrix<kF + D>(s.transpose() * (basis * h * basis.transpose()) * s), result);
+}
+
 template void DropNegative<12>(const double*, double*);
 template void ClampInFloat<12>(const double*, double*);
 template void MapEigenvalues<5>(const double*, EigenvalueMap, double*);
@@ -128,10 +163,16 @@ template void MapEigenvalues<9>(const double*, EigenvalueMap, double*);
 template void MapEigenvalues<12>(const double*, EigenvalueMap, double*);
 template void PullBack<3, 6>(const double*, const double*, int, const double*, EigenvalueMap,
                              double*);
+template void PullBack<4, 6>(const double*, const double*, int, const double*, EigenvalueMap,
+                             double*);
 template void PullBack<6, 9>(const double*, const double*, int, const double*, EigenvalueMap,
                              double*);
 template void PullBack<9, 12>(const double*, const double*, int, const double*, EigenvalueMap,
                               double*);
+template void ClampStretchBlocks<2>(const double*, const double*, const double*, const double*,
+                                    const double*, double*);
+template void ClampStretchBlocks<3>(const double*, const double*, const double*, const double*,
+                                    const double*, double*);
 
 }  // namespace internal
 }  // namespace definite

@@ -21,6 +21,11 @@ void ClampInFloat(const double* h, double* result);
 template <int F, int D>
 void PullBack(const double* lambda, const double* modes, int count, const double* map,
               EigenvalueMap eigenvalues, double* result);
+// u, v: D vectors of D numbers each; scaling: D x D, packed; pairs: two numbers for each pair of
+// stretches; map as above, D^2 x D(D + 1).
+template <int D>
+void ClampStretchBlocks(const double* u, const double* v, const double* scaling,
+                        const double* pairs, const double* map, double* result);
 
 }  // namespace internal
 }  // namespace definite

@@ -160,11 +160,10 @@ Modes<T, D, K> NearestPsd(const Modes<T, D, K>& modes) {
 }
 
 // Turns vectors r by reflections that put the heaviest mode, of weight |lambda| |r|^2, on the first
-// axis, and the heaviest of what is left on the second. Where one or two outweigh all others, their
-// sum is graded then, and rotations lose nothing of what is small.
-template <class T, int N, int K>
+// axis, the heaviest of what is left on the second, and so on. Where as many outweigh all others,
+// their sum is graded then, and rotations lose nothing of what is small.
+template <int kReflections, class T, int N, int K>
 struct HeaviestFirst {
-  static constexpr int kReflections = 2;
   Vec<T, N> mirror[kReflections];  // v -> v - factor (mirror.v) mirror
   T factor[kReflections];
 
@@ -206,7 +205,7 @@ struct HeaviestFirst {
 
 // The same of modes over four points that no translation changes: those are 9 dimensions with a
 // basis of constants, halves of (1, 1, -1, -1), (1, -1, 1, -1) and (1, -1, -1, 1).
-template <class T, int K>
+template <int kHeavy = 2, class T, int K>
 Modes<T, 12, 9> NearestPsdOfFour(const Modes<T, 12, K>& modes) {
   const T half = T(0.5);
   Vec<T, 9> r[K];
@@ -219,7 +218,7 @@ Modes<T, 12, 9> NearestPsdOfFour(const Modes<T, 12, K>& modes) {
       r[m][6 + i] = half * (d01 - d23);
     }
   }
-  const HeaviestFirst<T, 9, K> turned(modes.lambda, r);
+  const HeaviestFirst<kHeavy, T, 9, K> turned(modes.lambda, r);
   T a[9][9];
   for (int i = 0; i < 9; ++i) {
     for (int j = i; j < 9; ++j) {

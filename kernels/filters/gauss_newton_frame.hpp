@@ -18,7 +18,7 @@ struct GaussNewtonFrame {
   };
 
   template <class E, class T>
-  requires WithFrame<E, T> && OffersCurvature<E, T> && std::same_as<T, double>
+  requires WithFrame<E, T> && IsPenalty<E, T> && std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     // The curvature is the first mode of the first term.
     const auto term = std::get<0>(E::FrameTerms(x, p));

@@ -18,7 +18,7 @@ struct NumericReduced {
   };
 
   template <class E, class T>
-  requires kStudied<E> && std::same_as<T, double>
+  requires kStudied<E> && OffersSet<E, T, Set::kSplit> && std::same_as<T, double>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     const auto reduced = Reduce(Stacked(E::template HessianModes<Set::kSplit, Part::kAll>(x, p)));
     return Lift(reduced.basis, MapEigenvalues(reduced.h, ClampToPsd));

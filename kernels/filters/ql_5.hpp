@@ -17,7 +17,7 @@ struct Ql5 {
   };
 
   template <class E, class T>
-  requires kStudied<E>
+  requires kStudied<E> && OffersSet<E, T, Set::kSplit>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     return ClampInRange<ByQl>(Stacked(E::template HessianModes<Set::kSplit, Part::kAll>(x, p)));
   }

@@ -18,7 +18,7 @@ struct ShiftDiagonal {
   };
 
   template <class E, class T>
-  requires kStudied<E>
+  requires kStudied<E> && OffersSet<E, T, Set::kSplit>
   static auto Apply(const Vec<T, E::kDofs>& x, const Vec<T, E::kParams>& p) {
     const auto modes = Stacked(E::template HessianModes<Set::kSplit, Part::kAll>(x, p));
     const auto reduced = Reduce(modes);

@@ -47,12 +47,12 @@ void ForParts(std::string_view text, char separator, With with) {
 
 // What a file may speak of, as the energies have it.
 struct Known {
-  std::map<std::string_view, int> dofs;  // of each stencil
+  std::map<std::string_view, const EnergyRow*> of_stencil;  // one of each
   std::vector<std::string_view> parameters;
 
   Known() {
     for (const EnergyRow& energy : AllEnergies()) {
-      dofs[energy.stencil] = energy.dofs;
+      of_stencil[energy.stencil] = &energy;
       for (const Parameter& parameter : energy.parameters) {
         if (std::ranges::find(parameters, parameter.name) == parameters.end()) {
           parameters.push_back(parameter.name);
@@ -61,11 +61,11 @@ struct Known {
     }
   }
 
-  int DofsOf(std::string_view stencil) const {
-    const auto at = dofs.find(stencil);
-    if (at != dofs.end()) return at->second;
+  const EnergyRow& Of(std::string_view stencil) const {
+    const auto at = of_stencil.find(stencil);
+    if (at != of_stencil.end()) return *at->second;
     std::vector<std::string_view> names;
-    for (const auto& [name, size] : dofs) names.push_back(name);
+    for (const auto& [name, energy] : of_stencil) names.push_back(name);
     throw LineError(fmt::format("there is no stencil '{}'; expected one of {}", stencil,
                                 fmt::join(names, ", ")));
   }
@@ -95,15 +95,6 @@ double Number(std::string_view text, std::string_view name) {
   return negative ? -value : value;
 }
 
-// x0, y0, z0, x1, ...
-std::vector<std::string> CoordinateNames(int dofs) {
-  std::vector<std::string> names;
-  for (int i = 0; i < dofs; ++i) {
-    names.push_back(fmt::format("{}{}", "xyz"[i % 3], i / 3));
-  }
-  return names;
-}
-
 // Lines of one form. The settings are read first, then the configurations, by several threads.
 class Reader {
  public:
@@ -117,16 +108,18 @@ class Reader {
 
   const std::string& Stencil() const { return stencil_; }
   int Dofs() const { return dofs_; }
+  int Dimension() const { return dimension_; }
   const std::vector<std::string>& Names() const { return names_; }
   // Values of the first parameters: those that all lines share.
   const std::vector<double>& Shared() const { return shared_; }
 
  protected:
   void SetStencil(std::string_view name) {
-    const int dofs = known_.DofsOf(name);
+    const EnergyRow& energy = known_.Of(name);
     CheckStencil(name);
     stencil_ = name;
-    dofs_ = dofs;
+    dofs_ = energy.dofs;
+    dimension_ = energy.dimension;
   }
 
   void CheckStencil(std::string_view name) const {
@@ -158,7 +151,7 @@ class Reader {
  private:
   Known known_;
   std::string stencil_;
-  int dofs_ = 0;
+  int dofs_ = 0, dimension_ = 0;
   std::vector<std::string> names_;
   std::vector<double> shared_;
 };
@@ -215,7 +208,7 @@ class CsvReader : public Reader {
 
   void ReadHead(std::string_view text) {
     NeedStencil("a line above the head: # stencil=edge_edge");
-    const std::vector<std::string> coordinates = CoordinateNames(Dofs());
+    const std::vector<std::string> coordinates = CoordinateNames(Dofs(), Dimension());
     std::vector<std::string> missing = coordinates;
     ForParts(text, ',', [&](std::string_view name) {
       const auto at = std::ranges::find(coordinates, name);
@@ -435,6 +428,14 @@ void Recorded::Take(const DrawTarget& target, std::uint64_t index, double* x_out
                    ? parameter.value
                    : p[i * parameters.size() + static_cast<std::size_t>(at - parameters.begin())];
   }
+}
+
+std::vector<std::string> CoordinateNames(int dofs, int dimension) {
+  std::vector<std::string> names;
+  for (int i = 0; i < dofs; ++i) {
+    names.push_back(fmt::format("{}{}", "xyz"[i % dimension], i / dimension));
+  }
+  return names;
 }
 
 bool IsRecorded(std::string_view name) {

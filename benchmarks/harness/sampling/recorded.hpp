@@ -48,6 +48,9 @@ struct Recorded {
   void Take(const DrawTarget& target, std::uint64_t index, double* x_out, double* p_out) const;
 };
 
+// x0, y0, z0, x1, ...
+std::vector<std::string> CoordinateNames(int dofs, int dimension);
+
 // Whether a name is that of such a file: it ends in .csv or .jsonl.
 bool IsRecorded(std::string_view name);
 

@@ -294,7 +294,7 @@ export function stabilityChart(scene, width, { figure }) {
       },
       layer: [
         { mark: "rect",
-          encoding: { color: { field: "fraction", type: "quantitative", title: mapFigures[figure], legend: { format: "%" },
+          encoding: { color: { field: "fraction", type: "quantitative", title: mapFigures[figure], legend: { format: "%", values: [0, 0.5, 1] },
                                scale: { domain: [0, 1], range: ["#f7e7a8", "#e69f00", "#d55e00", "#4b1010"] } } } },
         { mark: { type: "text", fontSize: cell < 24 ? 8 : 10 },
           encoding: { text: { field: "percent" }, color: { condition: { test: "datum.fraction > 0.5", value: "#fff" }, value: "#222" } } },

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "benchmarks/harness/sampling/distribution.hpp"
+#include "benchmarks/harness/sampling/simplex.hpp"
 
 namespace definite::distributions {
 
@@ -15,6 +16,8 @@ namespace definite::distributions {
 //   vertex_vertex  x1-x0 = l m
 //   corner       three iid N(0,1) vertices: a strand is always active
 //   segment      two of those
+//   triangle, tetrahedron  F = Q (I + N/4), Q a rotation, N iid N(0,1): as in a simulation that
+//                moves a lot; the rest shape is a corner of edges 1
 //   edge_edge    e0 = x1-x0, e1 = x3-x2, e2 = x2-x0 = a e0 - b e1 + l n
 struct Active {
   static constexpr std::string_view kName = "active";
@@ -25,7 +28,8 @@ struct Active {
 
   static bool Supports(std::string_view stencil) {
     return stencil == "vertex_face" || stencil == "edge_edge" || stencil == "vertex_edge" ||
-           stencil == "vertex_vertex" || stencil == "corner" || stencil == "segment";
+           stencil == "vertex_vertex" || stencil == "corner" || stencil == "segment" ||
+           IsSimplex(stencil);
   }
 
   static void DrawCoordinates(const DrawTarget& target, Draws& draws, double* x) {
@@ -37,6 +41,8 @@ struct Active {
       DrawVertexEdge(draws, x);
     } else if (target.stencil == "vertex_vertex") {
       DrawVertexVertex(draws, x);
+    } else if (IsSimplex(target.stencil)) {
+      PutJittered(0.25, draws, DimensionOf(target.stencil), x);
     } else {
       DrawStrand(target, draws, x);
     }
