@@ -87,4 +87,10 @@ double FisherTest(std::uint64_t first, std::uint64_t of_first, std::uint64_t sec
   return std::min(p, 1.0);
 }
 
+double MedianOf(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
 }  // namespace definite::scenes

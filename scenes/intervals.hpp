@@ -23,6 +23,9 @@ Interval DifferenceInterval(std::uint64_t first, std::uint64_t of_first, std::ui
 // 17:2635-2650, method 10.
 Interval PairedInterval(const std::vector<bool>& first, const std::vector<bool>& second);
 
+// Of values in any order; the upper one of an even number, 0 of none.
+double MedianOf(std::vector<double> values);
+
 // Two-sided p value that two fractions are the same. Source: Fisher's exact test.
 double FisherTest(std::uint64_t first, std::uint64_t of_first, std::uint64_t second,
                   std::uint64_t of_second);

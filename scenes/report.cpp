@@ -114,11 +114,6 @@ std::string Wrapped(std::string_view text, std::size_t indent) {
   return lines + "\n";
 }
 
-double MedianOf(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
 // A number in a few digits.
 std::string Short(double value) {
   if (std::isnan(value)) return "-";
@@ -226,7 +221,15 @@ std::string ToTable(const Reported& reported) {
                            NameOf(a.effect));
     }
   }
-  if (reported.map) table += MapTable(*reported.map);
+  if (reported.map) {
+    table += MapTable(*reported.map);
+    const Prediction p = PredictionOf(*reported.map, reported.errors);
+    table += fmt::format(
+        "rank correlation of failing fraction and error over filters, mean of {} lengths and "
+        "masses:\n"
+        "distance {:.2f}, step error {:.2f}\n",
+        p.groups, p.distance, p.step_error);
+  }
   return table + "\n";
 }
 
@@ -268,8 +271,12 @@ Json ToJson(const Plan& plan, std::size_t all_scenes, const std::vector<Reported
       }
     }
     if (reported.map) {
+      const Prediction p = PredictionOf(*reported.map, reported.errors);
+      one["prediction"] = {
+          {"groups", p.groups}, {"distance", p.distance}, {"step_error", p.step_error}};
       one["map"] = Json::array();
-      for (const CaseResult& c : *reported.map) {
+      for (std::size_t i = 0; i < reported.map->size(); ++i) {
+        const CaseResult& c = (*reported.map)[i];
         Json cell = ToJson(c, true);  // maps are large
         std::vector<double> shares, steps;
         for (const Outcome& o : c.starts) {
@@ -278,6 +285,11 @@ Json ToJson(const Plan& plan, std::size_t all_scenes, const std::vector<Reported
         }
         cell["timing"] = {{"ns_per_step", 1e9 * MedianOf(steps)},
                           {"kernel_share", MedianOf(shares)}};
+        if (const auto& errors = reported.errors[i]) {
+          cell["error"] = {{"contacts", errors->contacts},
+                           {"distance", errors->distance},
+                           {"step_error", errors->step_error}};
+        }
         one["map"].push_back(cell);
       }
     }
@@ -361,6 +373,19 @@ std::string ToMarkdown(const Json& result) {
                           100 * fails.at("count").get<double>() / fails.at("of").get<double>());
     }
     text += "\n";
+  }
+  if (std::ranges::any_of(scenes.at("scenes"), [](const Json& s) { return s.contains("map"); })) {
+    text +=
+        "\n## Does an error predict failing\n\n| scene | lengths and masses | distance | step "
+        "error "
+        "|\n|---|--:|--:|--:|\n";
+  }
+  for (const Json& s : scenes.at("scenes")) {
+    if (!s.contains("prediction")) continue;
+    const Json& p = s.at("prediction");
+    text += fmt::format("| `{}` | {} | {:.2f} | {:.2f} |\n", s.at("name").get<std::string>(),
+                        p.at("groups").get<int>(), p.at("distance").get<double>(),
+                        p.at("step_error").get<double>());
   }
   return text;
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/run.hpp"
+#include "scenes/predict.hpp"
 
 namespace definite::scenes {
 
@@ -17,6 +17,7 @@ struct Reported {
   std::optional<SceneResult> result;
   std::optional<std::vector<Ablation>> ablations;
   std::optional<std::vector<CaseResult>> map;
+  std::vector<std::optional<Errors>> errors;  // of the map's cells
 };
 
 std::string ToTable(const Reported& reported);

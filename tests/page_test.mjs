@@ -13,7 +13,7 @@ const [program, npm] = process.argv.slice(-2).map((path) => resolve(path));
 const { chromium } = createRequire(join(npm, "package.json"))("playwright-core");
 const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "..");
 const signed = "collision/vertex_face/signed/quadratic";
-const charts = ["pareto", "distribution", "relabelling", "degeneracy", "stability", "floors", "stages"];
+const charts = ["pareto", "distribution", "relabelling", "degeneracy", "stability", "stability-prediction", "floors", "stages"];
 let folder, page_file, browser;
 
 before(async () => {
@@ -89,6 +89,10 @@ test("pickers choose the axes", async () => {
   await page.selectOption("#stability select[name=figure]", "kernel_share");
   await page.waitForFunction(() => document.querySelector("#stability .chart svg")?.textContent.includes("share of the filter"));
   assert.equal(await cells(), scenes[0].map.length);
+  const dots = page.locator("#stability-prediction .chart svg .mark-symbol.role-mark path");
+  assert.equal(await dots.count(), scenes[0].map.filter((cell) => cell.error).length);
+  await page.selectOption("#stability-prediction select[name=error]", "distance");
+  await page.waitForFunction(() => document.querySelector("#stability-prediction .chart svg")?.textContent.includes("distance to the nearest"));
   await page.selectOption("#floors select[name=ring]", "memory");
   assert.ok(await marks(page, "floors") > 1);
   assert.deepEqual(said, []);

@@ -82,6 +82,10 @@ class Scene(unittest.TestCase):
         cells = result["scenes"]["scenes"][0]["map"]
         self.assertEqual(len(cells), 3 * 12 * 9)
         self.assertIn("progressive", done.stdout)
+        self.assertIn("rank correlation", done.stdout)
+        self.assertEqual({c["case"]["filter"] for c in cells if "error" not in c},
+                         {"on_demand", "progressive"})  # which are no rows
+        self.assertGreater(result["scenes"]["scenes"][0]["prediction"]["groups"], 0)
         of_one = self.scene("tilted_edge", "--starts", "2", "--map", "--filter", "nearest")[0]
         self.assertEqual({c["case"]["filter"] for c in of_one["scenes"]["scenes"][0]["map"]},
                          {"nearest"})

@@ -240,6 +240,38 @@ TEST(Slip, IsTheDistanceTimesTheSlope) {
   EXPECT_NEAR(scene.run(c, 11, 0, nullptr)[Figure::kSlip], 1, 1e-3);
 }
 
+TEST(Prediction, CorrelatesRanks) {
+  EXPECT_DOUBLE_EQ(RankCorrelation({1, 2, 3, 4}, {0.1, 7, 8, 1e9}), 1);
+  EXPECT_DOUBLE_EQ(RankCorrelation({1, 2, 3}, {3, 2, 1}), -1);
+  // Ranks (0.5, 0.5, 2) and (0, 1.5, 1.5).
+  EXPECT_DOUBLE_EQ(RankCorrelation({5, 5, 9}, {1, 2, 2}), 0.5);
+  EXPECT_TRUE(std::isnan(RankCorrelation({1, 1, 1}, {1, 2, 3})));
+}
+
+TEST(Prediction, HasTheErrorsOfRowsOnContactsMet) {
+  const Scene& scene = *FindScene("cables_popping");
+  Plan plan;
+  plan.starts = 2;
+  std::vector<CaseResult> map;
+  for (const char* filter : {"nearest", "numeric", "analytic", "none", "on_demand"}) {
+    Case c = scene.contrast().front();
+    c.length = "signed";
+    c.filter = filter;
+    map.push_back({c, std::vector<Outcome>(plan.starts)});
+  }
+  const auto errors = *ErrorsOf(scene, map, plan);
+  ASSERT_TRUE(errors[0] && errors[1] && errors[2] && errors[3]);
+  EXPECT_FALSE(errors[4]);  // no row
+  EXPECT_GT(errors[0]->contacts, 20u);
+  EXPECT_EQ(errors[0]->distance, 0);
+  EXPECT_EQ(errors[0]->step_error, 0);
+  EXPECT_LT(errors[1]->distance, 1e-12);
+  EXPECT_LT(errors[1]->step_error, 1e-12);
+  EXPECT_GT(errors[2]->distance, 1e-4);
+  EXPECT_GT(errors[3]->distance, errors[2]->distance);
+  EXPECT_GT(errors[3]->step_error, errors[2]->step_error);
+}
+
 TEST(Intervals, AreThoseOfTheLiterature) {
   // Wilson: 15 of 148; Newcombe: 56/70 against 48/80, 0.2 [0.0524, 0.3339].
   const Interval wilson = WilsonInterval(15, 148);
@@ -287,7 +319,7 @@ TEST(Runs, EndWithAVerdictWhereTheyExplode) {
   Plan plan{9, 20, 2, {}, [] {}};
   const auto runs = RunCases(scene, {{"unsigned_frozen", "none", 0.3, 1, 0, ""}}, plan);
   EXPECT_GT(runs->front().Count(Figure::kBooms), 0u);
-  Reported reported{&scene, {}, {}, *runs};
+  Reported reported{&scene, {}, {}, *runs, {std::nullopt}};
   const std::string text = ToJson(plan, 1, {reported}).dump();
   EXPECT_EQ(text.find("nan"), text.npos);
   EXPECT_EQ(text.find("inf"), text.npos);

@@ -64,7 +64,9 @@ Json ShownScenes(const Json& scenes) {
   Json shown = Json::array();
   for (const Json& scene : scenes.at("scenes")) {
     shown.push_back(Only(scene, {"name", "claim"}));
-    if (scene.contains("map")) shown.back()["map"] = scene.at("map");
+    for (const char* key : {"map", "prediction"}) {
+      if (scene.contains(key)) shown.back()[key] = scene.at(key);
+    }
   }
   return shown;
 }

@@ -72,7 +72,10 @@ bool RunOne(const SceneOptions& options, const scenes::Plan& plan, scenes::Repor
   }
   if (!options.map) return true;
   reported.map = scenes::RunCases(scene, scenes::MapCases(scene, plan), plan);
-  return reported.map.has_value();
+  if (!reported.map) return false;
+  auto errors = scenes::ErrorsOf(scene, *reported.map, plan);
+  if (errors) reported.errors = std::move(*errors);
+  return errors.has_value();
 }
 
 nlohmann::ordered_json SceneJson(const scenes::Plan& plan, std::size_t all,
@@ -137,7 +140,7 @@ int RunScenes(const SceneOptions& options) {
                                    *plan.filter, scene->name));
     }
     progress.Start(std::string(scene->name), runs);
-    scenes::Reported one{scene, {}, {}, {}};
+    scenes::Reported one{scene, {}, {}, {}, {}};
     const bool whole = RunOne(options, plan, one);
     progress.Finish();
     if (!whole) break;

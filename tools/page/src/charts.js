@@ -1,5 +1,5 @@
 // The charts, as Vega-Lite specifications with their data in them. `width` is that of the page.
-import { costs, errors, familyNames, groupBy, pareto, points, replay, split, times } from "./data.js";
+import { costs, errors, familyNames, familyOf, groupBy, pareto, points, replay, split, times } from "./data.js";
 
 // Okabe and Ito's colours, which people tell apart however they see colour; black and yellow, which
 // one of the two backgrounds would swallow, are replaced.
@@ -301,5 +301,32 @@ export function stabilityChart(scene, width, { figure }) {
       ],
     },
     resolve: { axis: { x: "independent" } },
+  };
+}
+
+export const predictors = { distance: "median distance to the nearest PSD matrix", step_error: "median error of a contact's step" };
+
+// Failing fraction against what a filter gets wrong on the contacts that the scene meets.
+export function predictionChart(scene, width, { error }) {
+  const values = scene.map.filter((cell) => cell.error).map(({ case: c, figures: { fails }, error: e }) => ({
+    panel: c.length, filter: c.filter, family: familyOf(c.filter), mu: c.mu, fraction: fails.count / fails.of, low: fails.low, high: fails.high,
+    error: e[error], x: Math.max(1e-17, e[error]), contacts: e.contacts,
+  }));
+  if (!values.length) return null;
+  const size = panels(width, groups(values).length);
+  return {
+    ...panelled(values, size),
+    spec: {
+      width: size.width, height: 220,
+      mark: { type: "point", filled: true, size: 40, opacity: 0.8 },
+      encoding: {
+        x: log("x", predictors[error]),
+        y: { field: "fraction", type: "quantitative", title: "starts that fail", axis: { format: "%" } },
+        color: family,
+        tooltip: [{ field: "filter" }, { field: "panel", title: "length" }, { field: "mu" }, { field: "fraction", title: "starts that fail", format: ".0%" },
+                  { field: "low", title: "95 % from", format: ".0%" }, { field: "high", title: "95 % to", format: ".0%" },
+                  { field: "error", title: predictors[error], format: ".3g" }, { field: "contacts" }],
+      },
+    },
   };
 }

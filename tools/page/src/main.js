@@ -1,7 +1,7 @@
 import { parse, View } from "vega";
 import { compile } from "vega-lite";
 import { Handler } from "vega-tooltip";
-import { degeneracyChart, distributionChart, floorChart, historyChart, mapErrors, mapFigures, paretoChart, relabellingChart, ringsOf, stabilityChart, stagesChart } from "./charts.js";
+import { degeneracyChart, distributionChart, floorChart, historyChart, mapErrors, mapFigures, paretoChart, predictionChart, predictors, relabellingChart, ringsOf, stabilityChart, stagesChart } from "./charts.js";
 import { costs, errors, points, rowsOf } from "./data.js";
 import { csv, fromMarkdown, save } from "./tables.js";
 import { theme } from "./theme.js";
@@ -101,6 +101,12 @@ stable.forEach((scene, i) => {
   const s = section(stable.length > 1 ? `stability-${i + 1}` : "stability", `Where a simulation fails: ${scene.name}`, `${scene.claim}. A cell has, in percent, how many of the scene's random starts fail: mu is the stiffness of contact in units of mass over time step squared.`);
   const { tools, draw } = chart(s, (width) => stabilityChart(scene, width, choice), `stability-${scene.name}`);
   tools.prepend(picker("figure", Object.entries(mapFigures), choice.figure, (value) => { choice.figure = value; draw(); }));
+
+  if (!scene.prediction) return;
+  const { groups, distance, step_error } = scene.prediction, predictor = { error: "step_error" };
+  const p = section(`${s.id}-prediction`, `Does an error predict failing: ${scene.name}`, `Each point is a filter at one length and mass. Over the filters of one length and mass, the rank correlation of failing with distance is ${distance.toFixed(2)}, with the error of a contact's step ${step_error.toFixed(2)}: means of ${groups} where not all filters fail alike.`);
+  const prediction = chart(p, (width) => predictionChart(scene, width, predictor), `prediction-${scene.name}`);
+  prediction.tools.prepend(picker("error", Object.entries(predictors), predictor.error, (value) => { predictor.error = value; prediction.draw(); }));
 });
 
 if (history) {
