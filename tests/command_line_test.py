@@ -109,7 +109,7 @@ class Help(unittest.TestCase):
     def test_each_command_has_help_with_examples_within_100_columns(self):
         for command in ([], ["sweep"], ["replay"], ["list"], ["verify"], ["merge"], ["compare"],
                         ["export"], ["doctor"], ["speed"], ["report"], ["advise"], ["fuzz"],
-                        ["scene"]):
+                        ["scene"], ["newton"]):
             with self.subTest(command=command):
                 done = run(*command, "--help")
                 self.assertEqual(done.returncode, 0)

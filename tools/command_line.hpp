@@ -91,6 +91,7 @@ void AddReport(CLI::App& app, int& exit_code);
 void AddAdvise(CLI::App& app, int& exit_code);
 void AddFuzz(CLI::App& app, int& exit_code);
 void AddScene(CLI::App& app, int& exit_code);
+void AddNewton(CLI::App& app, int& exit_code);
 
 // The words of the command line, as given.
 const std::vector<std::string>& CommandWords();

@@ -81,6 +81,7 @@ int Run(int argc, char** argv) {
   AddAdvise(app, exit_code);
   AddFuzz(app, exit_code);
   AddScene(app, exit_code);
+  AddNewton(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version
