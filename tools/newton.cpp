@@ -32,7 +32,7 @@ struct NewtonOptions {
   bool quick = false, list = false;
 };
 
-// At most three, which a table has room for.
+// At most two, which a table has room for.
 std::vector<double> TolerancesOf(const NewtonOptions& options) {
   std::vector<double> tolerances;
   for (const std::string& word : options.tolerances) {
@@ -46,8 +46,8 @@ std::vector<double> TolerancesOf(const NewtonOptions& options) {
     tolerances.push_back(value);
   }
   std::ranges::sort(tolerances, std::greater());
-  if (tolerances.size() > 3) {
-    throw UsageError(fmt::format("--tolerance: expected at most 3, found {}", tolerances.size()));
+  if (tolerances.size() > 2) {
+    throw UsageError(fmt::format("--tolerance: expected at most 2, found {}", tolerances.size()));
   }
   return tolerances;
 }
@@ -92,19 +92,21 @@ std::vector<const EnergyRow*> EnergiesOf(const NewtonOptions& options) {
 std::vector<std::string> FiltersOf(const NewtonOptions& options,
                                    const std::vector<const EnergyRow*>& energies) {
   if (options.filters.empty()) return newton::DefaultFilters();
-  for (const std::string& filter : options.filters) {
-    std::set<std::string_view> known;
-    for (const KernelRow& row : AllKernels()) {
-      if (std::ranges::find(energies, row.energy) != energies.end() && row.scalar != "f32") {
-        known.insert(row.filter);
-      }
+  std::set<std::string_view> known;
+  for (const KernelRow& row : AllKernels()) {
+    if (std::ranges::find(energies, row.energy) != energies.end() && row.scalar != "f32") {
+      known.insert(row.filter);
     }
+  }
+  std::vector<std::string> filters;
+  for (const std::string& filter : options.filters) {
     if (!known.contains(filter)) {
       throw UsageError(
           fmt::format("--filter '{}': expected one of\n  {}", filter, fmt::join(known, "\n  ")));
     }
+    if (std::ranges::find(filters, filter) == filters.end()) filters.push_back(filter);
   }
-  return options.filters;
+  return filters;
 }
 
 // A contest that no filter has entered yet.
@@ -185,14 +187,12 @@ int RunNewton(const NewtonOptions& options) {
   }
   const std::size_t all = contests.size();
   contests.resize(done);
-  if (options.json != "-" && done > 1) {
-    const auto profiles = newton::ProfilesOf(contests, settings.tolerances);
-    fmt::print("{}", newton::ProfileTable(profiles, done));
-  }
+  const auto profiles = newton::ProfilesOf(contests, filters, settings.tolerances);
+  if (options.json != "-" && done > 1) fmt::print("{}", newton::ProfileTable(profiles, done));
   if (file) {
     nlohmann::ordered_json json =
         ResultHead(CommandWords(), ParseCount("--seed", options.seed, 0), done < all);
-    json["newton"] = newton::ToJson(contests, all, settings);
+    json["newton"] = newton::ToJson(contests, all, settings, profiles);
     file->Commit(Dump(json, Detail::kSummaries));
   }
   if (done == all) return kOk;
@@ -223,7 +223,7 @@ void AddNewton(CLI::App& app, int& exit_code) {
       ->type_name("NAME");
   command
       ->add_option("--tolerance", options->tolerances,
-                   "Of the gradient, at most three; runs end at the least (default: 1e-4 1e-8)")
+                   "Of the gradient, one or two; runs end at the least (default: 1e-4 1e-8)")
       ->type_name("T");
   command
       ->add_option("--max-iterations", options->most_iterations,

@@ -43,6 +43,8 @@ Point Turned(const Point& p, double angle) {
   return {0.5 + c * x - s * y, 0.5 + s * x + c * y, p[2]};
 }
 Point Twist(const Point& rest, double s) { return Turned(rest, pi * s); }
+// No element between a held top and a bottom becomes flat by symmetry, as it would by half a turn.
+Point LesserTwist(const Point& rest, double s) { return Turned(rest, pi / 1.2 * s); }
 Point Stretch(const Point& rest, double s) { return {rest[0], rest[1], rest[2] * (1 + s)}; }
 Point Squash(const Point& rest, double s) { return {rest[0], rest[1], rest[2] * (1 - s / 2)}; }
 // Along half a circle as long as the bar.
@@ -61,7 +63,8 @@ void HoldEnds(const Mesh& mesh, Motions motion, Problem& problem) {
   }
 }
 
-// Each vertex takes part in the motion as it is high, and is moved a little at random.
+// Each vertex is moved a little at random, and then takes part in the motion as it is high: an
+// element of a cube that is off by so little is not inverted.
 template <Motions kMotion>
 Problem Spread(const Template& of, const EnergyRow& energy, const Mesh& mesh, double edge,
                std::uint64_t seed) {
@@ -70,10 +73,9 @@ Problem Spread(const Template& of, const EnergyRow& energy, const Mesh& mesh, do
   Draws draws(StreamId(of.name), seed, 0);
   for (std::size_t v = 0; v < mesh.rest.size(); ++v) {
     if (problem.fixed[3 * v]) continue;
-    const Point moved = kMotion(mesh.rest[v], HeightOf(mesh, mesh.rest[v]));
-    for (std::size_t i = 0; i < 3; ++i) {
-      problem.start[3 * v + i] = moved[i] + kJitter * edge * (2 * draws.Uniform() - 1);
-    }
+    Point off = mesh.rest[v];
+    for (double& coordinate : off) coordinate += kJitter * edge * (2 * draws.Uniform() - 1);
+    std::ranges::copy(kMotion(off, HeightOf(mesh, off)), &problem.start[3 * v]);
   }
   return problem;
 }
@@ -132,7 +134,7 @@ Surface SteepSaddle() { return Saddle(1.5); }
 Surface WavySheet() { return Waves(0.3, 6); }
 Surface SteepPeak() { return Peak(3, 0.4); }
 Surface SteepCone() { return Cone(2); }
-Surface FiveArms() { return Star(0.6, 5); }
+Surface ThreeArms() { return Star(0.4, 3); }
 Surface LongRibbon() { return Ribbon(3); }
 
 }  // namespace
@@ -153,8 +155,8 @@ std::span<const Template> AllProblems() {
       {"disk_peak", "z = 3 exp(-(r/0.4)^2), laid out", kPlane, false, Flatten<SteepPeak>},
       {"disk_cone", "a cone twice as high as its radius, laid out", kPlane, false,
        Flatten<SteepCone>},
-      {"disk_star", "a plane star of 5 arms: the least energy is 0", kPlane, false,
-       Flatten<FiveArms>},
+      {"disk_star", "a plane star of 3 arms: the least energy is 0", kPlane, false,
+       Flatten<ThreeArms>},
       {"disk_ribbon", "an ellipse 3 times as long as wide, rolled, laid out", kPlane, false,
        Flatten<LongRibbon>},
       {"bar_twist", "twisted by 180 degrees; start: spread along the bar, jittered", kSolid, false,
@@ -163,8 +165,8 @@ std::span<const Template> AllProblems() {
        MoveBar<Stretch>},
       {"bar_bend", "bent to half a circle; start: likewise", kSolid, false, MoveBar<Bend>},
       {"block_squash", "pressed to half its height; start: likewise", kSolid, false, SquashBlock},
-      {"bar_twist_abrupt", "twisted by 180 degrees; start: all but the top at rest", kSolid, true,
-       MoveBarAbruptly<Twist>},
+      {"bar_twist_abrupt", "twisted by 150 degrees; start: all but the top at rest", kSolid, true,
+       MoveBarAbruptly<LesserTwist>},
       {"bar_bend_abrupt", "bent to half a circle; start: all but the top at rest", kSolid, true,
        MoveBarAbruptly<Bend>},
       {"block_scrambled", "its bottom held; start: all else anywhere in the block", kSolid, true,

@@ -32,7 +32,7 @@ std::string_view Describe(Outcome outcome) {
 }
 
 // "-" where the tolerance was not met.
-std::string IterationsTo(const Run& run, std::size_t tolerance) {
+std::string IterationsTo(const Descent& run, std::size_t tolerance) {
   return tolerance < run.reached.size() ? fmt::format("{}", run.reached[tolerance].iterations)
                                         : "-";
 }
@@ -55,7 +55,7 @@ Json ToJson(const Seconds& seconds) {
 }
 
 Json ToJson(const Entry& entry, const Settings& settings) {
-  const Run& run = entry.run;
+  const Descent& run = entry.run;
   Json reached = Json::array(), history = Json::array();
   for (std::size_t t = 0; t < settings.tolerances.size(); ++t) {
     const bool met = t < run.reached.size();
@@ -108,18 +108,18 @@ std::string ToTable(const Contest& contest, const Settings& settings) {
                                   WithCommas(static_cast<std::uint64_t>(problem.Elements())),
                                   WithCommas(VerticesOf(problem)),
                                   WithCommas(static_cast<std::uint64_t>(FreeOf(problem))));
-  table += fmt::format("  {:<16}", "iterations to");
-  for (const double tolerance : settings.tolerances) table += fmt::format("{:>7.0e}", tolerance);
-  table += fmt::format("{:>6}{:>6}{:>8}{:>7}{:>7}{:>7}{:>7}{:>13}{:>8}\n", "fact.", "indef",
+  table += fmt::format("  {:<18}", "iterations to");
+  for (const double tolerance : settings.tolerances) table += fmt::format("{:>6.0e}", tolerance);
+  table += fmt::format("{:>6}{:>6}{:>7}{:>7}{:>7}{:>7}{:>8}{:>12}{:>7}\n", "fact.", "indef",
                        "hess s", "sum s", "solve", "search", "all s", "energy", "grad.");
   for (const Entry& entry : contest.entries) {
-    const Run& run = entry.run;
-    table += fmt::format("  {:<16}", entry.row->filter);
+    const Descent& run = entry.run;
+    table += fmt::format("  {:<18}", entry.row->filter);
     for (std::size_t t = 0; t < settings.tolerances.size(); ++t) {
-      table += fmt::format("{:>7}", IterationsTo(run, t));
+      table += fmt::format("{:>6}", IterationsTo(run, t));
     }
     const Seconds& s = run.seconds;
-    table += fmt::format("{:>6}{:>6}{:>8.3f}{:>7.3f}{:>7.3f}{:>7.3f}{:>7.3f}{:>13.6g}{:>8.0e}\n",
+    table += fmt::format("{:>6}{:>6}{:>7.3f}{:>7.3f}{:>7.3f}{:>7.3f}{:>8.3f}{:>12.5g}{:>7.0e}\n",
                          run.factorizations, run.indefinite, s.hessians, s.assembly, s.solution,
                          s.line_search, s.Sum(), run.value, run.gradient);
   }
@@ -138,20 +138,20 @@ std::string ProfileTable(std::span<const Profile> profiles, std::size_t contests
     const Profile &iterations = profiles[i], &seconds = profiles[i + 1];
     table += fmt::format("share of {} problems solved to {:.0e} within tau of the best\n", contests,
                          iterations.tolerance);
-    table += fmt::format("  {:<16}{:<12}", "", "iterations:");
+    table += fmt::format("  {:<18}{:<12}", "", "iterations:");
     for (const double tau : kTaus) table += fmt::format("{:>7g}", tau);
-    table += fmt::format("  {:<10}", "seconds:");
+    table += fmt::format(" {:<10}", "seconds:");
     for (const double tau : kTaus) table += fmt::format("{:>7g}", tau);
     table += "\n";
     for (std::size_t line = 0; line < iterations.lines.size(); ++line) {
-      table += fmt::format("  {:<16}{:12}", iterations.lines[line].filter, "");
+      table += fmt::format("  {:<18}{:12}", iterations.lines[line].filter, "");
       const auto add = [&](const Profile& profile) {
         for (const int solved : profile.lines[line].solved) {
           table += fmt::format("{:>5.0f} %", 100.0 * solved / static_cast<double>(contests));
         }
       };
       add(iterations);
-      table += fmt::format("{:12}", "");
+      table += fmt::format("{:11}", "");
       add(seconds);
       table += "\n";
     }
@@ -160,7 +160,8 @@ std::string ProfileTable(std::span<const Profile> profiles, std::size_t contests
   return table;
 }
 
-Json ToJson(std::span<const Contest> contests, std::size_t all, const Settings& settings) {
+Json ToJson(std::span<const Contest> contests, std::size_t all, const Settings& settings,
+            std::span<const Profile> profiles) {
   Json json = {{"solver", settings.solver == LinearSolver::kLdlt ? "ldlt" : "conjugate_gradients"},
                {"tolerances", settings.tolerances},
                {"most_iterations", settings.most_iterations},
@@ -179,7 +180,7 @@ Json ToJson(std::span<const Contest> contests, std::size_t all, const Settings& 
     for (const Entry& entry : contest.entries) one["runs"].push_back(ToJson(entry, settings));
     json["problems"].push_back(std::move(one));
   }
-  for (const Profile& profile : ProfilesOf(contests, settings.tolerances)) {
+  for (const Profile& profile : profiles) {
     json["profiles"].push_back(ToJson(profile, contests.size()));
   }
   return json;

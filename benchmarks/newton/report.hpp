@@ -13,7 +13,7 @@ std::string ProfileTable(std::span<const Profile> profiles, std::size_t contests
 
 // `all` is how many contests were asked for.
 nlohmann::ordered_json ToJson(std::span<const Contest> contests, std::size_t all,
-                              const Settings& settings);
+                              const Settings& settings, std::span<const Profile> profiles);
 
 // The problems with what they are.
 std::string ProblemTable();

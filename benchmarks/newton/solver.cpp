@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "benchmarks/harness/clock.hpp"
@@ -45,7 +46,7 @@ class Newton {
     for (const double tolerance : settings.tolerances) run_.reached.push_back({tolerance, 0, 0});
   }
 
-  Run Solve() {
+  Descent Solve() {
     if (problem_.motion) {
       Move(*problem_.motion);
     } else {
@@ -80,6 +81,9 @@ class Newton {
     const double begin = run_.seconds.Sum();
     const std::size_t first = run_.iterations.size();
     terms_ = objective_.ValueAt(run_.x);
+    if (!terms_.in_domain) {
+      throw std::invalid_argument(problem_.name + ": its start is not in the energy's domain");
+    }
     std::size_t met = 0;
     Outcome outcome = Outcome::kConverged;
     for (;;) {
@@ -172,7 +176,7 @@ class Newton {
   LinearSystem system_;
   const double force_;
   Terms terms_;  // of the energy at run_.x
-  Run run_;
+  Descent run_;
 };
 
 }  // namespace
@@ -183,7 +187,7 @@ std::string_view NameOf(Outcome outcome) {
   return kNames[static_cast<int>(outcome)];
 }
 
-Run Solve(const Problem& problem, const KernelRow& row, const Settings& settings) {
+Descent Solve(const Problem& problem, const KernelRow& row, const Settings& settings) {
   return Newton(problem, row, settings).Solve();
 }
 

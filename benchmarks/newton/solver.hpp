@@ -53,7 +53,7 @@ struct Reached {
   double seconds;
 };
 
-struct Run {
+struct Descent {
   Outcome outcome = Outcome::kConverged;  // the first that is not, over steps of time
   std::vector<Iteration> iterations;
   int factorizations = 0, evaluations = 0;  // of the energy in line searches
@@ -65,7 +65,8 @@ struct Run {
   std::vector<double> x;
 };
 
-// The same bits whenever it runs on one machine, but for seconds.
-Run Solve(const Problem& problem, const KernelRow& row, const Settings& settings);
+// The same bits whenever it runs on one machine, but for seconds. Throws std::invalid_argument
+// where the start is outside the energy's domain.
+Descent Solve(const Problem& problem, const KernelRow& row, const Settings& settings);
 
 }  // namespace definite::newton

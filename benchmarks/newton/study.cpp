@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace definite::newton {
 
@@ -35,43 +36,49 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // What it took to meet a tolerance.
-double Cost(const Run& run, std::size_t tolerance, Profile::Measure measure) {
+double Cost(const Descent& run, std::size_t tolerance, Profile::Measure measure) {
   if (tolerance >= run.reached.size()) return kNever;
   const Reached& reached = run.reached[tolerance];
   return measure == Profile::kIterations ? reached.iterations : reached.seconds;
 }
 
-Profile ProfileOf(std::span<const Contest> contests, double value, std::size_t tolerance,
-                  Profile::Measure measure) {
-  Profile profile{value, measure, {}};
+double LeastCost(const Contest& contest, std::size_t tolerance, Profile::Measure measure) {
+  double least = kNever;
+  for (const Entry& entry : contest.entries)
+    least = std::min(least, Cost(entry.run, tolerance, measure));
+  return least;
+}
+
+Profile::Line LineOf(std::span<const Contest> contests, const std::string& filter,
+                     std::size_t tolerance, Profile::Measure measure) {
+  Profile::Line line{filter, {}};
   for (const Contest& contest : contests) {
-    double least = kNever;
-    for (const Entry& entry : contest.entries)
-      least = std::min(least, Cost(entry.run, tolerance, measure));
+    const double least = LeastCost(contest, tolerance, measure);
     for (const Entry& entry : contest.entries) {
-      auto line = std::ranges::find(profile.lines, entry.row->filter, &Profile::Line::filter);
-      if (line == profile.lines.end()) {
-        profile.lines.push_back({std::string(entry.row->filter), {}});
-        line = profile.lines.end() - 1;
-        line->solved.resize(std::size(kTaus));
-      }
+      if (entry.row->filter != filter) continue;
+      line.solved.resize(std::size(kTaus));
       const double cost = Cost(entry.run, tolerance, measure);
       for (std::size_t t = 0; t < std::size(kTaus); ++t) {
-        line->solved[t] += cost < kNever && cost <= kTaus[t] * least;
+        line.solved[t] += cost < kNever && cost <= kTaus[t] * least;
       }
     }
   }
-  return profile;
+  return line;
 }
 
 }  // namespace
 
 std::vector<Profile> ProfilesOf(std::span<const Contest> contests,
+                                const std::vector<std::string>& filters,
                                 const std::vector<double>& tolerances) {
   std::vector<Profile> profiles;
   for (std::size_t t = 0; t < tolerances.size(); ++t) {
     for (const auto measure : {Profile::kIterations, Profile::kSeconds}) {
-      profiles.push_back(ProfileOf(contests, tolerances[t], t, measure));
+      Profile& profile = profiles.emplace_back(Profile{tolerances[t], measure, {}});
+      for (const std::string& filter : filters) {
+        Profile::Line line = LineOf(contests, filter, t, measure);
+        if (!line.solved.empty()) profile.lines.push_back(std::move(line));
+      }
     }
   }
   return profiles;

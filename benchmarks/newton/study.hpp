@@ -19,7 +19,7 @@ std::vector<std::string> DefaultFilters();
 
 struct Entry {
   const KernelRow* row;
-  Run run;
+  Descent run;
 };
 
 // One problem, and a run for each rival that has a row for its energy.
@@ -47,7 +47,9 @@ struct Profile {
 };
 inline constexpr double kTaus[] = {1, 1.5, 2, 5};
 
+// Iterations and seconds for each tolerance; filters in their order, those that ran.
 std::vector<Profile> ProfilesOf(std::span<const Contest> contests,
+                                const std::vector<std::string>& filters,
                                 const std::vector<double>& tolerances);
 
 }  // namespace definite::newton
