@@ -286,7 +286,7 @@ TEST(Problems, BeginInTheDomainOfTheirEnergies) {
       if (!of.Fits(*energy)) continue;
       ++fitting;
       for (const bool coarse : {true, false}) {
-        for (const std::uint64_t seed : {1, 2, 3}) {
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
           const Problem problem = of.make(of, *energy, coarse, seed);
           EXPECT_TRUE(Objective(problem).ValueAt(problem.start).in_domain)
               << of.name << energy->name << coarse << seed;

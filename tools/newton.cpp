@@ -218,8 +218,7 @@ void AddNewton(CLI::App& app, int& exit_code) {
       ->type_name("NAME");
   command
       ->add_option("--filter", options->filters,
-                   fmt::format("Filters (default: {} where they exist)",
-                               fmt::join(newton::DefaultFilters(), " ")))
+                   "Filters, as in definite list (default: those below)")
       ->type_name("NAME");
   command
       ->add_option("--tolerance", options->tolerances,
@@ -242,7 +241,8 @@ void AddNewton(CLI::App& app, int& exit_code) {
   command->add_flag("--quick", options->quick, "Coarse meshes");
   AddJsonOption(*command, options->json);
   command->add_flag("--list", options->list, "Show the problems and stop");
-  command->footer(
+  command->footer(fmt::format(
+      "Filters by default, where an energy has them:\n  {}\n\n"
       "Tolerances are of the largest entry of the gradient, over the greatest force on a vertex\n"
       "whose elements all pull with a stress of their stiffness. A filter that does not converge\n"
       "is a finding, and exits 0.\n\n"
@@ -250,7 +250,8 @@ void AddNewton(CLI::App& app, int& exit_code) {
       "  definite newton --quick\n"
       "  definite newton 'disk_*' --energy symmetric_dirichlet arap --json disks.json\n"
       "  definite newton bar_twist --energy stable_neo_hookean --filter analytic numeric\n"
-      "  definite newton --obj surface.obj --tolerance 1e-6");
+      "  definite newton --obj surface.obj --tolerance 1e-6",
+      fmt::join(newton::DefaultFilters(), " ")));
   command->callback([options, &exit_code] { exit_code = RunNewton(*options); });
 }
 

@@ -41,7 +41,7 @@ int CountFaces(const Mesh& mesh, int count) {
     } while (std::ranges::prev_permutation(chosen).found);
   }
   std::ranges::sort(faces);
-  return static_cast<int>(std::ranges::unique(faces).begin() - faces.begin());
+  return static_cast<int>(std::unique(faces.begin(), faces.end()) - faces.begin());
 }
 
 }  // namespace
