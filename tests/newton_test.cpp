@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <numbers>
+#include <set>
 
 #include "benchmarks/harness/sampling/random.hpp"
 #include "benchmarks/newton/catalogue.hpp"
@@ -101,6 +102,30 @@ Mesh Torus(int n) {
   return mesh;
 }
 
+// The disk without its middle.
+Mesh Annulus() {
+  Mesh annulus = FlatDisk(4);
+  annulus.elements.erase(annulus.elements.begin(), annulus.elements.begin() + 3 * 24);
+  return annulus;
+}
+
+// Two tori joined where a triangle of each was.
+Mesh DoubleTorus(int n) {
+  Mesh mesh = Torus(n);
+  const Mesh other = Torus(n);
+  const int first[] = {mesh.elements[0], mesh.elements[1], mesh.elements[2]};
+  mesh.elements.erase(mesh.elements.begin(), mesh.elements.begin() + 3);
+  for (std::size_t i = 3; i < other.elements.size(); ++i) {
+    const int v = other.elements[i];
+    // Turned over: its triangle is met from the other side.
+    const int twin[] = {first[0], first[2], first[1]};
+    const auto at = std::ranges::find(first, v) - first;
+    mesh.elements.push_back(at < 3 ? twin[at] : v + other.Vertices());
+  }
+  for (const Point& p : other.rest) mesh.rest.push_back({8 - p[0], p[1], p[2]});
+  return mesh;
+}
+
 double AreaOf(const Mesh& mesh) {
   double sum = 0;
   for (int e = 0; e < mesh.Elements(); ++e) sum += MeasureOf(mesh, e);
@@ -148,14 +173,25 @@ TEST(Topology, CountsTheHandles) {
   EXPECT_TRUE(BoundariesOf(Torus(5)).empty());
 }
 
-TEST(Cut, OpensAClosedSurface) {
-  for (const int n : {1, 2, 6}) {
-    const Mesh sphere = Sphere(n), disk = MakeDiskOf(sphere);
-    EXPECT_EQ(disk.Elements(), sphere.Elements());
-    EXPECT_EQ(EulerCharacteristic(disk), 1) << n;
-    EXPECT_EQ(BoundariesOf(disk).size(), 1u) << n;
-    EXPECT_EQ(AreaOf(disk), AreaOf(sphere));
+TEST(Cut, OpensAnySurface) {
+  Mesh holed = Torus(6);
+  holed.elements.erase(holed.elements.begin(), holed.elements.begin() + 3);
+  for (const Mesh& mesh :
+       {Sphere(1), Sphere(2), Sphere(6), Torus(4), Torus(9), Annulus(), holed, DoubleTorus(7)}) {
+    const Mesh disk = MakeDiskOf(mesh);
+    EXPECT_EQ(disk.Elements(), mesh.Elements());
+    EXPECT_EQ(EulerCharacteristic(disk), 1);
+    EXPECT_EQ(BoundariesOf(disk).size(), 1u);
+    EXPECT_EQ(AreaOf(disk), AreaOf(mesh));
+    EXPECT_NO_THROW(EmbedDisk(disk));
   }
+}
+
+TEST(Cut, IsShortWhereItCanBe) {
+  // From one boundary straight to the other: both have one vertex more.
+  const Mesh annulus = Annulus(), disk = MakeDiskOf(annulus);
+  const std::set<int> used(annulus.elements.begin(), annulus.elements.end());
+  EXPECT_EQ(disk.rest.size(), used.size() + 3);
 }
 
 TEST(Cut, LeavesADiskAsItIs) {
@@ -174,11 +210,7 @@ std::string RefusalOf(const Mesh& mesh) {
   return "";
 }
 
-TEST(Cut, RefusesWhatIsNoDisk) {
-  EXPECT_EQ(RefusalOf(Torus(5)), "expected a surface of genus 0, found genus 1");
-  Mesh annulus = FlatDisk(3);
-  annulus.elements.erase(annulus.elements.begin(), annulus.elements.begin() + 18);
-  EXPECT_EQ(RefusalOf(annulus), "expected one boundary or none, found 2");
+TEST(Cut, RefusesWhatIsNoSurface) {
   Mesh two = FlatDisk(1);
   for (const int v : FlatDisk(1).elements) two.elements.push_back(v + 7);
   for (const Point& p : FlatDisk(1).rest) two.rest.push_back(p);

@@ -234,7 +234,7 @@ void AddNewton(CLI::App& app, int& exit_code) {
       ->type_name("NAME");
   command
       ->add_option("--obj", options->obj,
-                   "Lay out the surface of a Wavefront OBJ; a closed one of genus 0 is cut")
+                   "Lay out the surface of a Wavefront OBJ; what is no disk is cut")
       ->type_name("FILE")
       ->excludes(problems);
   AddSeedOption(*command, options->seed);

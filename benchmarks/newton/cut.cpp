@@ -26,74 +26,150 @@ Mesh FromCorners(const Mesh& mesh, const std::vector<int>& vertex_of_corner) {
 }
 
 // Corners are one vertex where triangles share an edge that is not cut.
-template <class IsCut>
-std::vector<int> JoinCorners(const Mesh& mesh, const std::vector<Edge>& edges, IsCut is_cut) {
+std::vector<int> JoinCorners(const Mesh& mesh, const std::vector<Edge>& edges,
+                             const std::vector<bool>& cut) {
   Classes corners(3 * mesh.Elements());
-  for (const Edge& edge : edges) {
-    if (edge.second < 0 || is_cut(edge)) continue;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const int first = edges[i].first, second = edges[i].second;
+    if (second < 0 || cut[i]) continue;
     // They run through it in opposite directions.
-    corners.Join(edge.first, NextCorner(edge.second));
-    corners.Join(NextCorner(edge.first), edge.second);
+    corners.Join(first, NextCorner(second));
+    corners.Join(NextCorner(first), second);
   }
   return corners.Numbers();
 }
 
-struct Paths {
-  std::vector<double> length;
-  std::vector<int> before;  // the vertex before it on the way from a source; -1 for a source
-};
+// Finds where to cut; edges by their number.
+class Cutter {
+ public:
+  explicit Cutter(const Mesh& mesh)
+      : mesh_(mesh), edges_(EdgesOf(mesh)), at_vertex_(mesh.rest.size()) {
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      at_vertex_[static_cast<std::size_t>(edges_[i].a)].push_back(i);
+      at_vertex_[static_cast<std::size_t>(edges_[i].b)].push_back(i);
+    }
+  }
 
-// Dijkstra along edges.
-Paths ShortestPaths(const Mesh& mesh, const std::vector<Edge>& edges,
-                    const std::vector<int>& sources) {
-  const auto count = mesh.rest.size();
-  std::vector<std::vector<int>> neighbours(count);
-  for (const Edge& edge : edges) {
-    neighbours[static_cast<std::size_t>(edge.a)].push_back(edge.b);
-    neighbours[static_cast<std::size_t>(edge.b)].push_back(edge.a);
+  // Whether each edge is cut; those of the boundary are.
+  std::vector<bool> Cut() const {
+    std::vector<int> tips;
+    int root = 0;
+    if (IsClosed()) {
+      tips = Tips();
+      root = tips.front();
+    }
+    std::vector<bool> cut = NotCrossed(ShortestPaths({root}).edges);
+    Prune(tips, cut);
+    return cut;
   }
-  Paths paths{std::vector<double>(count, std::numeric_limits<double>::infinity()),
-              std::vector<int>(count, -1)};
-  using Reached = std::pair<double, int>;
-  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
-  for (const int source : sources) {
-    paths.length[static_cast<std::size_t>(source)] = 0;
-    queue.emplace(0, source);
+
+ private:
+  struct Paths {
+    std::vector<double> length;
+    std::vector<bool> edges;  // that some path uses: a tree for each source
+  };
+
+  bool IsBoundary(std::size_t edge) const { return edges_[edge].second < 0; }
+  bool IsClosed() const {
+    return std::ranges::none_of(edges_, [](const Edge& edge) { return edge.second < 0; });
   }
-  while (!queue.empty()) {
-    const auto [length, v] = queue.top();
-    queue.pop();
-    if (length > paths.length[static_cast<std::size_t>(v)]) continue;
-    for (const int w : neighbours[static_cast<std::size_t>(v)]) {
-      const double through = length + Norm(mesh.At(w) - mesh.At(v));
-      if (through < paths.length[static_cast<std::size_t>(w)]) {
-        paths.length[static_cast<std::size_t>(w)] = through;
-        paths.before[static_cast<std::size_t>(w)] = v;
+
+  // Dijkstra's. Boundaries have no length: paths go once to each of them, and never through the
+  // surface between two of its vertices.
+  Paths ShortestPaths(const std::vector<int>& sources) const {
+    constexpr auto kNone = std::numeric_limits<std::size_t>::max();
+    std::vector<double> length(mesh_.rest.size(), std::numeric_limits<double>::infinity());
+    std::vector<std::size_t> last(mesh_.rest.size(), kNone);  // edge of the path to a vertex
+    using Reached = std::pair<double, int>;
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
+    for (const int source : sources) {
+      length[static_cast<std::size_t>(source)] = 0;
+      queue.emplace(0, source);
+    }
+    while (!queue.empty()) {
+      const auto [so_far, v] = queue.top();
+      queue.pop();
+      if (so_far > length[static_cast<std::size_t>(v)]) continue;
+      for (const std::size_t edge : at_vertex_[static_cast<std::size_t>(v)]) {
+        const int w = edges_[edge].a + edges_[edge].b - v;
+        const double through = so_far + (IsBoundary(edge) ? 0 : Norm(mesh_.At(w) - mesh_.At(v)));
+        if (through >= length[static_cast<std::size_t>(w)]) continue;
+        length[static_cast<std::size_t>(w)] = through;
+        last[static_cast<std::size_t>(w)] = edge;
         queue.emplace(through, w);
       }
     }
+    Paths paths{std::move(length), std::vector<bool>(edges_.size(), false)};
+    for (const std::size_t edge : last) {
+      if (edge != kNone) paths.edges[edge] = true;
+    }
+    return paths;
   }
-  return paths;
-}
 
-int FarthestOf(const Paths& paths) {
-  return static_cast<int>(std::ranges::max_element(paths.length) - paths.length.begin());
-}
+  // Each the farthest from those before it; the first, from vertex 0.
+  std::vector<int> Tips() const {
+    std::vector<int> tips;
+    for (int i = 0; i < kTips; ++i) {
+      const Paths paths = ShortestPaths(tips.empty() ? std::vector{0} : tips);
+      const auto farthest = std::ranges::max_element(paths.length);
+      tips.push_back(static_cast<int>(farthest - paths.length.begin()));
+    }
+    return tips;
+  }
 
-// The edges of shortest paths from one far vertex to others, each farthest from those before it.
-std::set<std::pair<int, int>> CutTree(const Mesh& mesh, const std::vector<Edge>& edges) {
-  std::vector<int> tips = {FarthestOf(ShortestPaths(mesh, edges, {0}))};
-  const Paths paths = ShortestPaths(mesh, edges, tips);
-  std::set<std::pair<int, int>> tree;
-  for (int tip = 1; tip < kTips; ++tip) {
-    tips.push_back(FarthestOf(ShortestPaths(mesh, edges, tips)));
-    int v = tips.back();
-    for (int w; (w = paths.before[static_cast<std::size_t>(v)]) >= 0; v = w) {
-      tree.insert(std::minmax(v, w));
+  // All edges but those that join triangles to a tree; it crosses none of `uncrossed`.
+  std::vector<bool> NotCrossed(const std::vector<bool>& uncrossed) const {
+    std::vector<std::size_t> edge_of(static_cast<std::size_t>(3 * mesh_.Elements()));
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      edge_of[static_cast<std::size_t>(edges_[i].first)] = i;
+      if (!IsBoundary(i)) edge_of[static_cast<std::size_t>(edges_[i].second)] = i;
+    }
+    std::vector<bool> result(edges_.size(), true);
+    std::vector<bool> reached(static_cast<std::size_t>(mesh_.Elements()), false);
+    std::queue<int> queue({0});
+    reached[0] = true;
+    while (!queue.empty()) {
+      const int triangle = queue.front();
+      queue.pop();
+      for (int corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+        const std::size_t edge = edge_of[static_cast<std::size_t>(corner)];
+        if (IsBoundary(edge) || uncrossed[edge]) continue;
+        const int next = (edges_[edge].first + edges_[edge].second - corner) / 3;
+        if (reached[static_cast<std::size_t>(next)]) continue;
+        reached[static_cast<std::size_t>(next)] = true;
+        result[edge] = false;
+        queue.push(next);
+      }
+    }
+    return result;
+  }
+
+  // Sews up what ends inside the surface at a vertex that is no tip.
+  void Prune(const std::vector<int>& tips, std::vector<bool>& cut) const {
+    std::vector<int> count(mesh_.rest.size(), 0);
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      if (!cut[i]) continue;
+      ++count[static_cast<std::size_t>(edges_[i].a)];
+      ++count[static_cast<std::size_t>(edges_[i].b)];
+    }
+    for (int begin = 0; begin < mesh_.Vertices(); ++begin) {
+      for (int v = begin;
+           count[static_cast<std::size_t>(v)] == 1 && !std::ranges::count(tips, v);) {
+        const auto& around = at_vertex_[static_cast<std::size_t>(v)];
+        const std::size_t edge =
+            *std::ranges::find_if(around, [&](std::size_t i) { return cut[i]; });
+        cut[edge] = false;
+        --count[static_cast<std::size_t>(v)];
+        v = edges_[edge].a + edges_[edge].b - v;
+        --count[static_cast<std::size_t>(v)];
+      }
     }
   }
-  return tree;
-}
+
+  const Mesh& mesh_;
+  const std::vector<Edge> edges_;
+  std::vector<std::vector<std::size_t>> at_vertex_;
+};
 
 void CheckJoined(const Mesh& mesh, const std::vector<Edge>& edges) {
   Classes parts(mesh.Elements());
@@ -111,27 +187,15 @@ Mesh MakeDiskOf(const Mesh& mesh) {
   const std::vector<Edge> edges = EdgesOf(mesh);
   CheckJoined(mesh, edges);
   const Mesh joined =
-      FromCorners(mesh, JoinCorners(mesh, edges, [](const Edge&) { return false; }));
-  std::set<int> used(mesh.elements.begin(), mesh.elements.end());
+      FromCorners(mesh, JoinCorners(mesh, edges, std::vector<bool>(edges.size(), false)));
+  const std::set<int> used(mesh.elements.begin(), mesh.elements.end());
   if (joined.rest.size() > used.size()) {
     throw MeshError(fmt::format(
         "expected triangles around each vertex that are joined by edges, found {} vertices more",
         joined.rest.size() - used.size()));
   }
-  const auto boundaries = static_cast<int>(BoundariesOf(joined).size());
-  if (boundaries > 1) {
-    throw MeshError(fmt::format("expected one boundary or none, found {}", boundaries));
-  }
-  const int genus = (2 - boundaries - EulerCharacteristic(joined)) / 2;
-  if (genus > 0) {
-    throw MeshError(fmt::format("expected a surface of genus 0, found genus {}", genus));
-  }
-  if (boundaries == 1) return joined;
-  const std::vector<Edge> joined_edges = EdgesOf(joined);
-  const auto tree = CutTree(joined, joined_edges);
-  return FromCorners(joined, JoinCorners(joined, joined_edges, [&tree](const Edge& edge) {
-                       return tree.contains({edge.a, edge.b});
-                     }));
+  if (BoundariesOf(joined).size() == 1 && EulerCharacteristic(joined) == 1) return joined;
+  return FromCorners(joined, JoinCorners(joined, EdgesOf(joined), Cutter(joined).Cut()));
 }
 
 }  // namespace definite::newton

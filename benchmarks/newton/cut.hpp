@@ -6,9 +6,12 @@
 
 namespace definite::newton {
 
-// A disk as it is. A closed surface of genus 0 is cut along a tree of shortest paths between
-// vertices that lie far from each other. Throws MeshError for any other surface: parts that are not
-// joined, triangles that meet in a vertex alone, several boundaries, handles.
+// A disk as it is; any other surface cut along a graph of shortest paths. A closed one is cut as
+// far as some vertices that lie far from each other, too, for it would be crammed through one short
+// slit otherwise. Throws MeshError for parts that are not joined, and for triangles that meet in a
+// vertex alone. Source: Erickson and Whittlesey 2005, "Greedy optimal homotopy and homology
+// generators": the graph is a tree of shortest paths with the edges that a tree of triangles beside
+// it does not cross.
 Mesh MakeDiskOf(const Mesh& mesh);
 
 }  // namespace definite::newton
