@@ -577,6 +577,13 @@ TEST(Solver, GoesDownAndKeepsCount) {
   EXPECT_EQ(run.indefinite, 0);
 }
 
+// No more is cut from a step than its elements ask for.
+TEST(Solver, TakesWholeStepsAtTheEnd) {
+  const Descent run = SolveBy(ProblemNamed("disk_star", "symmetric_dirichlet"), "analytic");
+  EXPECT_LT(run.iterations.front().step, 1);
+  EXPECT_EQ(run.iterations.back().step, 1);
+}
+
 TEST(Solver, HasTheSameBitsEachTime) {
   for (const char* name : {"bar_twist", "bar_swing"}) {
     const Problem problem = ProblemNamed(name, "stable_neo_hookean");
@@ -613,6 +620,19 @@ TEST(Solver, LetsAFreeBlockFall) {
   }
   // A step each: the energy is quadratic along the way.
   EXPECT_EQ(run.iterations.size(), 4u);
+}
+
+// A step of time that ends early has met the loose tolerance, and those after it have not.
+TEST(Solver, MeetsNoToleranceInStepsThatItDidNotTake) {
+  Settings settings;
+  settings.most_iterations = 2;
+  settings.tolerances = {0.1, 1e-12};
+  Problem problem = ProblemNamed("bar_swing", "symmetric_dirichlet");
+  const Descent five = SolveBy(problem, "analytic", settings);
+  EXPECT_EQ(five.outcome, Outcome::kIterationLimit);
+  EXPECT_TRUE(five.reached.empty());
+  problem.motion->steps = 1;
+  EXPECT_EQ(SolveBy(problem, "analytic", settings).reached.size(), 1u);
 }
 
 TEST(Profiles, CountWhatIsNearTheBest) {

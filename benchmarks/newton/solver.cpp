@@ -62,7 +62,7 @@ class Newton {
     for (std::size_t i = 0; i < run_.x.size(); ++i) {
       weight.push_back(motion.mass[i / d] / (motion.dt * motion.dt));
     }
-    for (int step = 0; step < motion.steps && run_.outcome == Outcome::kConverged; ++step) {
+    for (int step = 0; step < motion.steps; ++step) {
       const std::vector<double> before = run_.x;
       std::vector<double> predicted = before;
       for (std::size_t i = 0; i < before.size(); ++i) {
@@ -70,6 +70,11 @@ class Newton {
       }
       objective_.SetInertia(weight, std::move(predicted));
       run_.outcome = Minimize();
+      if (run_.outcome != Outcome::kConverged) {
+        // The steps that are left have met nothing.
+        if (step + 1 < motion.steps) run_.reached.clear();
+        return;
+      }
       for (std::size_t i = 0; i < before.size(); ++i) {
         velocity[i] = (run_.x[i] - before[i]) / motion.dt;
       }

@@ -39,14 +39,14 @@ struct Iteration {
   int negative_pivots;     // of the factorisation
 };
 
-// Of each stage.
+// Of each stage. Pattern and ordering of the matrix, found once, are left out.
 struct Seconds {
   double hessians = 0, assembly = 0, solution = 0, line_search = 0, gradients = 0;
 
   double Sum() const { return hessians + assembly + solution + line_search + gradients; }
 };
 
-// How far it was when the gradient first met a tolerance, in the last step of time.
+// What it took until the gradient first met a tolerance, summed over all steps of time.
 struct Reached {
   double tolerance;
   int iterations;
@@ -54,7 +54,7 @@ struct Reached {
 };
 
 struct Descent {
-  Outcome outcome = Outcome::kConverged;  // the first that is not, over steps of time
+  Outcome outcome = Outcome::kConverged;  // else it is the last step of time
   std::vector<Iteration> iterations;
   int factorizations = 0, evaluations = 0;  // of the energy in line searches
   int indefinite = 0;                       // factorisations with a negative pivot
