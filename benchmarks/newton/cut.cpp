@@ -194,7 +194,6 @@ Mesh MakeDiskOf(const Mesh& mesh) {
         "expected triangles around each vertex that are joined by edges, found {} vertices more",
         joined.rest.size() - used.size()));
   }
-  if (BoundariesOf(joined).size() == 1 && EulerCharacteristic(joined) == 1) return joined;
   return FromCorners(joined, JoinCorners(joined, EdgesOf(joined), Cutter(joined).Cut()));
 }
 

@@ -5,6 +5,7 @@ namespace definite::newton {
 namespace {
 
 constexpr double kResidual = 1e-10;  // of conjugate gradients, relative to the right-hand side
+constexpr double kZero = 1e-10;      // a pivot, relative to the largest
 
 }  // namespace
 
@@ -31,6 +32,13 @@ LinearSystem::Answer LinearSystem::Solve(const Matrix& a, const Vector& b) {
   }
   if (!answer.x.allFinite()) answer.x.resize(0);
   return answer;
+}
+
+int CountNegative(const Matrix& a) {
+  const Eigen::SimplicialLDLT<Matrix, Eigen::Lower> ldlt(a);
+  if (ldlt.info() != Eigen::Success) return static_cast<int>(a.rows());
+  const Eigen::ArrayXd pivots = ldlt.vectorD();
+  return static_cast<int>((pivots < -kZero * pivots.abs().maxCoeff()).count());
 }
 
 }  // namespace definite::newton

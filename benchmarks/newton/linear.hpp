@@ -29,4 +29,8 @@ class LinearSystem {
   std::variant<Ldlt, Cg> solver_;
 };
 
+// How many eigenvalues are negative: pivots that are, but for those that rounding makes of 0. All
+// of them if there is no factorisation.
+int CountNegative(const Matrix& a);
+
 }  // namespace definite::newton

@@ -79,6 +79,7 @@ Json ToJson(const Entry& entry, const Settings& settings) {
           {"solver_iterations", run.solver_iterations},
           {"value", NumberOrNull(run.value)},
           {"gradient", NumberOrNull(run.gradient)},
+          {"falling", run.falling},
           {"reached", reached},
           {"timing", ToJson(run.seconds)},
           {"history", history}};
@@ -124,7 +125,13 @@ std::string ToTable(const Contest& contest, const Settings& settings) {
                          s.line_search, s.Sum(), run.value, run.gradient);
   }
   for (const Entry& entry : contest.entries) {
-    if (entry.run.outcome == Outcome::kConverged) continue;
+    if (entry.run.outcome == Outcome::kConverged) {
+      if (entry.run.falling > 0) {
+        table += fmt::format("  {} ends in a saddle point: the energy falls in {} directions\n",
+                             entry.row->filter, entry.run.falling);
+      }
+      continue;
+    }
     table += fmt::format("  {} after {} iterations: {}\n", entry.row->filter,
                          entry.run.iterations.size(), Describe(entry.run.outcome));
   }

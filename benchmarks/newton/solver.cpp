@@ -52,6 +52,7 @@ class Newton {
     } else {
       run_.outcome = Minimize();
     }
+    run_.falling = CountFalling();
     return std::move(run_);
   }
 
@@ -110,6 +111,14 @@ class Newton {
     }
     run_.reached.resize(std::min(met, run_.reached.size()));
     return outcome;
+  }
+
+  // A gradient that is small is that of a saddle point, too.
+  int CountFalling() const {
+    Hessian exact(objective_, *FindKernel(problem_.energy->name + "/none/f64"));
+    exact.Evaluate(run_.x);
+    exact.Assemble();
+    return CountNegative(exact.Sum());
   }
 
   // One step; kConverged if there is nothing wrong with it.

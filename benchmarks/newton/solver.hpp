@@ -60,6 +60,7 @@ struct Descent {
   int indefinite = 0;                       // factorisations with a negative pivot
   long solver_iterations = 0;               // of conjugate gradients
   double value = 0, gradient = 0;           // at the end, as in Iteration
+  int falling = 0;                          // directions in which the exact Hessian falls there
   std::vector<Reached> reached;
   Seconds seconds;
   std::vector<double> x;

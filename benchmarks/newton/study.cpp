@@ -37,7 +37,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // What it took to meet a tolerance.
 double Cost(const Descent& run, std::size_t tolerance, Profile::Measure measure) {
-  if (tolerance >= run.reached.size()) return kNever;
+  if (tolerance >= run.reached.size() || run.falling > 0) return kNever;
   const Reached& reached = run.reached[tolerance];
   return measure == Profile::kIterations ? reached.iterations : reached.seconds;
 }

@@ -33,9 +33,9 @@ struct Contest {
 void RunContest(const std::vector<std::string>& filters, const Settings& settings,
                 const std::function<void()>& advance, Contest& contest);
 
-// Problems that a filter solved within tau times the least of all filters; one for whose energy it
-// has no row it has not solved.
-// Source: Dolan and Moré 2002.
+// Problems that a filter solved within tau times the least of all filters. It has not solved one
+// that it left in a saddle point, nor one for whose energy it has no row. Source: Dolan and Moré
+// 2002.
 struct Profile {
   double tolerance;
   enum Measure { kIterations, kSeconds } measure;
