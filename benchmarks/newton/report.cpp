@@ -127,7 +127,7 @@ std::string ToTable(const Contest& contest, const Settings& settings) {
   for (const Entry& entry : contest.entries) {
     if (entry.run.outcome == Outcome::kConverged) {
       if (entry.run.falling > 0) {
-        table += fmt::format("  {} ends in a saddle point: the energy falls in {} directions\n",
+        table += fmt::format("  {} ends in a saddle point, negative eigenvalues: {}\n",
                              entry.row->filter, entry.run.falling);
       }
       continue;

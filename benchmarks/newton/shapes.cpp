@@ -68,7 +68,8 @@ Surface Waves(double height, double waves) {
 
 Surface Peak(double height, double width) {
   return [height, width](double rho, double phi) {
-    return Point{X(rho, phi), Y(rho, phi), height * std::exp(-rho * rho / (width * width))};
+    const double x = X(rho, phi), y = Y(rho, phi), r = std::hypot(x - 0.2, y - 0.1);
+    return Point{x, y, height * std::exp(-r * r / (width * width))};
   };
 }
 

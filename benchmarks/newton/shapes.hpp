@@ -20,7 +20,8 @@ Surface Cap(double angle);
 Surface Saddle(double height);
 // Crests over the plane: z = height sin(waves x) sin(waves y).
 Surface Waves(double height, double waves);
-// z = height exp(-(rho / width)^2).
+// z = height exp(-(r / width)^2), r from the point (0.2, 0.1): off the middle, for a surface with
+// symmetry may be laid out with it, in a saddle point.
 Surface Peak(double height, double width);
 // z = height (1 - rho): flat but for its tip.
 Surface Cone(double height);
