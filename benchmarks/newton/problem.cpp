@@ -23,6 +23,20 @@ void AppendParameters(const EnergyRow& energy, const double* rest, std::vector<d
   }
 }
 
+namespace {
+
+// Whether a triangle twice as large is at rest as well.
+bool IgnoresScale(const EnergyRow& energy) {
+  const double rest[] = {0, 0, 1, 0, 0, 1}, larger[] = {0, 0, 2, 0, 0, 2};
+  std::vector<double> p;
+  AppendParameters(energy, rest, p);
+  double value = 0;
+  energy.value(larger, p.data(), &value, 1);
+  return value == 0;
+}
+
+}  // namespace
+
 Problem ParameterizeDisk(std::string name, const EnergyRow& energy, const Mesh& disk) {
   Problem problem;
   problem.name = std::move(name);
@@ -38,7 +52,9 @@ Problem ParameterizeDisk(std::string name, const EnergyRow& energy, const Mesh& 
   problem.fixed.assign(problem.start.size(), false);
   const auto left = static_cast<std::size_t>(2 * embedding.left);
   problem.fixed[left] = problem.fixed[left + 1] = true;
-  problem.fixed[static_cast<std::size_t>(2 * embedding.right + 1)] = true;
+  const auto right = static_cast<std::size_t>(2 * embedding.right);
+  problem.fixed[right] = IgnoresScale(energy);
+  problem.fixed[right + 1] = true;
   return problem;
 }
 

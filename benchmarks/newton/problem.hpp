@@ -39,7 +39,8 @@ struct Problem {
 void AppendParameters(const EnergyRow& energy, const double* rest, std::vector<double>& p);
 
 // A disk laid out in the plane from Tutte's embedding. One vertex is fixed, another held on the x
-// axis through it: layouts that are turned or moved are the same.
+// axis through it: layouts that are turned or moved are the same. By an energy that ignores scale
+// larger ones are, too, and the other is fixed as well.
 Problem ParameterizeDisk(std::string name, const EnergyRow& energy, const Mesh& disk);
 
 // Tetrahedra with their rest shape, all free, at rest.
