@@ -38,7 +38,7 @@ enum class Set {
   kFrame,    // of the paper's reduced frame, in a form that is stable everywhere in the domain
   kPrinted,  // of the reduced frame, by the formulas as printed
   kSplit,    // orthogonal in x but for the curvature's
-  kExact,    // the one whose sum cancels least; for most energies the frame's
+  kExact,    // the one whose sum cancels least
 };
 
 // Which part of a set; a filter asks only for what it keeps.

@@ -208,8 +208,10 @@ class Accuracy(unittest.TestCase):
                 self.assertIsNone(figure[key])
             self.assertEqual([figure["max"][key] for key in ("x", "p")], [None, None])
             self.assertEqual(figure["max"]["index"], full["max"]["index"])
-            for key in ("count", "median", "p99", "p999"):
-                self.assertEqual(figure[key], full[key], (name, key))
+            self.assertEqual(figure["count"], full["count"])
+            # Up to the rounding of P, which is another row's where `nearest` is judged itself.
+            for key in ("median", "p99", "p999"):
+                self.assertAlmostEqual(figure[key], full[key], delta=1e-12 * abs(full[key]))
         self.assertIsNone(row["accuracy"]["rounding"])
         lines = self.json.read_text().splitlines()
         self.assertEqual(sum('"kernel"' in line for line in lines), len(self.result["rows"]))

@@ -67,9 +67,10 @@ double Neighbours::Change(const reference::Filter<Quad>& filter, Truth<Quad>& tr
     for (Truth<Quad>& neighbour : truths_) {
       at->second = std::max(at->second, Distance(filter.define(neighbour), definition));
     }
-    // Not one digit is left: a step farther, and it may be of any size. And beside an edge that is
-    // less than another's rounding, a foot point may be anywhere, which few neighbours show.
-    if (lost_edge_ || at->second >= static_cast<double>(reference::FrobeniusNorm(definition))) {
+    // Not one digit is left where a neighbour is half as large, or else: a step farther, and it may
+    // be of any size. And beside an edge that is less than another's rounding, a foot point may be
+    // anywhere, which few neighbours show.
+    if (lost_edge_ || 2 * at->second >= static_cast<double>(reference::FrobeniusNorm(definition))) {
       at->second = std::numeric_limits<double>::infinity();
     }
   }

@@ -192,7 +192,8 @@ DEFINITE_INLINE void SecularEquation<T, N>::Step(Bracket& b) const {
   constant = constant * far;
   const T linear = MulAdd(constant, far, near_pole + far_pole);
   const T last = near_pole * far;
-  const T root = Sqrt(MulAdd(linear, linear, T(-4.0) * (last * constant)));
+  // Where both poles have a root beside them that is the other's, rounding may leave less than 0.
+  const T root = Sqrt(Max(MulAdd(linear, linear, T(-4.0) * (last * constant)), T(0.0)));
   const auto positive = linear >= T(0.0);
   const T next = Select(positive, last + last, linear - root) /
                  Select(positive, linear + root, constant + constant);

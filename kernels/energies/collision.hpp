@@ -124,7 +124,9 @@ struct Collision {
       const auto slopes = SlopesAt(f.l, q, (f.l >= q[1]) | Penalty::Outside(f.l, q));
       return Length::PrintedModes(f, slopes.psi1, slopes.psi2);
     } else {
-      return PendingModes<kSet, T>(x, p).template OfPart<kPart>();
+      // Rows of the frame over a short edge are long and cancel; those turned are orthogonal.
+      constexpr Set kUsed = kSet == Set::kExact && kTurns ? Set::kSplit : kSet;
+      return PendingModes<kUsed, T>(x, p).template OfPart<kPart>();
     }
   }
 
