@@ -52,13 +52,18 @@ std::array<Point, 4> Vertices(const Shape& s, std::string_view stencil) {
   if (stencil == "vertex_edge") return {Plus(n, s.a, e0), origin, e0, origin};
   if (stencil == "vertex_vertex") return {origin, n, origin, origin};
   if (stencil == "segment") return {origin, e0, origin, origin};
+  if (stencil == "torsion") {
+    const double t = s.half_twist, inverse = 1 / (1 + t * t);
+    const Point turned = {e1[0], e1[1] * (1 - t * t) * inverse, e1[1] * (2 * t) * inverse};
+    return {e1, origin, e0, Plus(e0, 1, turned)};
+  }
   return {e0, origin, e1, origin};
 }
 
 Shape InShort(const Shape& s) {
   Shape shape = s;
   for (double* value : {&shape.length0, &shape.length1, &shape.sine, &shape.a, &shape.b, &shape.l,
-                        &shape.eps, &shape.unit, &shape.rest_height}) {
+                        &shape.eps, &shape.half_twist, &shape.unit, &shape.rest_height}) {
     *value = Short(*value);
   }
   for (double& stretch : shape.stretches) stretch = Short(stretch);
@@ -105,6 +110,7 @@ double OfShape(const Shape& shape, const Genes& genes, const DrawTarget& target,
                const Parameter& parameter) {
   if (parameter.name == "eps") return shape.eps;
   if (parameter.name == "side") return SideOf(genes);
+  if (parameter.name == "tau0") return genes.u[6] < 0.5 ? -parameter.value : parameter.value;
   if (parameter.name.starts_with("rest_")) {
     const auto digit = [&](std::size_t i) {
       return static_cast<std::size_t>(parameter.name[i] - '0');
@@ -201,6 +207,7 @@ Shape OrdinaryShape(const Genes& genes) {
   }
   shape.eps = 0.05 + 0.2 * u[6];
   shape.l = (2 * u[7] - 1) * shape.eps;
+  shape.half_twist = 3 * (2 * u[7] - 1);
   shape.unit = 1;
   shape.shift = {};
   shape.stretches = {1 + u[0], 0.75 + 0.5 * u[1], 0.5 + 0.5 * u[2]};

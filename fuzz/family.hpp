@@ -41,6 +41,7 @@ Genes DrawGenes(Draws& draws, std::optional<int> decade = std::nullopt);
 //   vertex_edge   x0 - x1 = a e0 + l n       (e0 = x2-x1)
 //   vertex_vertex x1 - x0 = l n
 //   corner        e0 = x0-x1, e1 = x2-x1: a strand bent at x1
+//   torsion       x2-x1 = e0, x0-x1 = e1, and x3-x2 as long, with the angle at x1, turned about e0
 //   segment       x1 - x0 = e0
 struct Shape {
   double length0, length1;  // of the edges
@@ -48,6 +49,7 @@ struct Shape {
   bool obtuse;
   double a, b;  // the foot point, in edges
   double l, eps;
+  double half_twist;                // tangent of half the angle from x0 to x3 about e0
   double unit;                      // all lengths times this
   std::array<double, 3> shift;      // added to every vertex, in edges of length 1
   std::array<double, 3> stretches;  // the last one at will negative; a triangle has the outer two
@@ -105,7 +107,8 @@ inline constexpr std::string_view kFaces[] = {"vertex_face"}, kEdgePairs[] = {"e
                                   kContacts[] = {"edge_edge", "vertex_edge", "vertex_face"},
                                   kAllContacts[] = {"edge_edge", "vertex_edge", "vertex_face",
                                                     "vertex_vertex"},
-                                  kStrands[] = {"corner"}, kSprings[] = {"segment"},
+                                  kStrands[] = {"corner", "torsion"}, kTwisted[] = {"torsion"},
+                                  kSprings[] = {"segment"},
                                   kSimplices[] = {"tetrahedron", "triangle"},
                                   kTetrahedra[] = {"tetrahedron"},
                                   kEverything[] = {"corner",      "edge_edge",    "segment",

@@ -7,6 +7,7 @@
 
 #include "reference/dual.hpp"
 #include "reference/matrix.hpp"
+#include "reference/spectrum.hpp"
 
 namespace definite::reference {
 
@@ -54,9 +55,11 @@ struct Energy {
 //   Residuals(x, p), if psi is half of the sum of their squares;
 //   kFrameDofs; FrameAt(x, at, p), the frame coordinates c of x with their weights frozen at `at`
 //   (T); FrameValue(c, at, p), psi of them, of which the Hessian loses nothing by frozen weights;
-//   RemainderValue(c, at, p), the part of psi that loses something, a minimum over the weights, and
-//   FreeFrame(x, p), the coordinates with weights that follow x. With S and S + D the Jacobians of
-//   FrameAt and FreeFrame, the part's Hessian is S^T Hc S - D^T Hc D (Shi & Kim 2023, Eq. 17).
+//   or none, where psi is no function of them: what of them the Hessian is, is then found by
+//   fitting; RemainderValue(c, at, p), the part of psi that loses something, a minimum over the
+//   weights, and FreeFrame(x, p), the coordinates with weights that follow x. With S and S + D the
+//   Jacobians of FrameAt and FreeFrame, the part's Hessian is S^T Hc S - D^T Hc D (Shi & Kim 2023,
+//   Eq. 17).
 template <class E>
 concept EnergyDefinition = requires(const Dual2<double, E::kDofs>* x, const double* p) {
   { E::Name() } -> std::same_as<std::string>;
@@ -88,6 +91,20 @@ Matrix<T> Jacobian(const std::array<Dual2<T, N>, M>& c) {
   for (int i = 0; i < jacobian.rows; ++i)
     for (int j = 0; j < N; ++j) jacobian(i, j) = c.data()[i].gradient[j];
   return jacobian;
+}
+
+// The a for which map^T a map is h, where there is one and the rows of map are independent: with
+// their Gram matrix g, g^-1 map h map^T g^-1; and once more for what that leaves.
+template <class T>
+Matrix<T> Fitted(const Matrix<T>& h, const Matrix<T>& map) {
+  const Matrix<T> transpose = Transpose(map);
+  const Matrix<T> inverse =
+      MapSpectrum(JacobiSpectrum(map * transpose), [](const T& g) { return 1 / g; });
+  const auto fit = [&](const Matrix<T>& rest) {
+    return Congruence(Congruence(rest, transpose), inverse);
+  };
+  const Matrix<T> a = fit(h);
+  return a + fit(h - Congruence(a, map));
 }
 
 // The table row of an energy: every derivative by automatic differentiation.
@@ -131,13 +148,18 @@ Energy<T> MakeEnergy() {
       const auto values = Values<E::kFrameDofs>(frozen.data());
       const auto c = Variables<E::kFrameDofs>(values.data());
       const Matrix<T> map = Jacobian(frozen);
-      std::vector<FrameTerm<T>> terms{{Unpack(E::FrameValue(c.data(), x, p)).hessian, map}};
-      if constexpr (kHasRemainder) {
-        const Matrix<T> hessian = Unpack(E::RemainderValue(c.data(), x, p)).hessian;
-        terms.push_back({hessian, map});
-        terms.push_back({-hessian, Jacobian(E::FreeFrame(variables.data(), p)) - map});
+      if constexpr (!requires { E::FrameValue(c.data(), x, p); }) {
+        return std::vector<FrameTerm<T>>{
+            {Fitted(Unpack(E::Value(variables.data(), p)).hessian, map), map}};
+      } else {
+        std::vector<FrameTerm<T>> terms{{Unpack(E::FrameValue(c.data(), x, p)).hessian, map}};
+        if constexpr (kHasRemainder) {
+          const Matrix<T> hessian = Unpack(E::RemainderValue(c.data(), x, p)).hessian;
+          terms.push_back({hessian, map});
+          terms.push_back({-hessian, Jacobian(E::FreeFrame(variables.data(), p)) - map});
+        }
+        return terms;
       }
-      return terms;
     };
   }
   return row;

@@ -374,7 +374,8 @@ std::string ToMarkdown(const Json& result) {
     }
     text += "\n";
   }
-  if (std::ranges::any_of(scenes.at("scenes"), [](const Json& s) { return s.contains("map"); })) {
+  if (std::ranges::any_of(scenes.at("scenes"),
+                          [](const Json& s) { return s.contains("prediction"); })) {
     text +=
         "\n## Does an error predict failing\n\n| scene | lengths and masses | distance | step "
         "error "

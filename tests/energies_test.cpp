@@ -231,6 +231,13 @@ std::vector<Numbers> DegenerateShapes(std::string_view stencil) {
   if (stencil == "vertex_vertex" || stencil == "segment") {
     return {{0, 0, 0, 0, 0, 0}, {1, 2, 3, 1, 2, 3}, {1e300, 0, 0, 1e300, 0, 0}};  // one point
   }
+  if (stencil == "torsion") {
+    return {{-1, 0, 0, 0, 0, 0, 2, 0, 0, 3, 1, 0},    // straight at the first corner
+            {0, 1, 0, 0, 0, 0, 2, 0, 0, 1, 1e-9, 0},  // folded at the second
+            {0, 0, 0, 0, 0, 0, 2, 1, 0, 3, 1, 1},     // an edge of length zero
+            {0, 1, 0, 0, 0, 0, 0, 0, 0, 3, 1, 1},     // the middle one
+            {1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3}};    // one point
+  }
   if (stencil == "triangle") {
     return {{0, 0, 1e40, 0, 0, 1e40},  // stretched beyond 2^100
             {0, 0, 0, -1e300, 1, 0},   // one edge alone
@@ -269,10 +276,11 @@ TEST_P(EveryEnergy, IsZeroOutsideItsDomain) {
   EXPECT_GE(outside, 3);
 }
 
-// Where an energy acts, Gauss-Newton's matrix is the same for every eps, omega0 and length at rest.
+// Where an energy acts, Gauss-Newton's matrix is the same for every eps and rest angle or length.
 bool Reads(const KernelRow& row, std::string_view parameter) {
   return !(row.filter.starts_with("gauss_newton") &&
-           (parameter == "eps" || parameter == "omega0" || parameter == "length"));
+           (parameter == "eps" || parameter == "omega0" || parameter == "tau0" ||
+            parameter == "length"));
 }
 
 TEST_P(EveryEnergy, PassesANaNOnToEveryRow) {

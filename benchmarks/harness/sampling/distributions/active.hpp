@@ -15,7 +15,8 @@ namespace definite::distributions {
 //   vertex_edge  x0-x1 = beta e + l m, e = x2-x1, m a unit vector normal to e
 //   vertex_vertex  x1-x0 = l m
 //   corner       three iid N(0,1) vertices: a strand is always active
-//   segment      two of those
+//   torsion      four
+//   segment      two
 //   triangle, tetrahedron  F = Q (I + N/4), Q a rotation, N iid N(0,1): as in a simulation that
 //                moves a lot; the rest shape is a corner of edges 1
 //   edge_edge    e0 = x1-x0, e1 = x3-x2, e2 = x2-x0 = a e0 - b e1 + l n
@@ -29,7 +30,7 @@ struct Active {
   static bool Supports(std::string_view stencil) {
     return stencil == "vertex_face" || stencil == "edge_edge" || stencil == "vertex_edge" ||
            stencil == "vertex_vertex" || stencil == "corner" || stencil == "segment" ||
-           IsSimplex(stencil);
+           stencil == "torsion" || IsSimplex(stencil);
   }
 
   static void DrawCoordinates(const DrawTarget& target, Draws& draws, double* x) {
