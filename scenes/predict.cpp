@@ -18,6 +18,8 @@ using Vector12 = Eigen::Matrix<double, 12, 1>;
 
 constexpr std::size_t kMostContacts = 500;  // evenly out of all that are met
 constexpr std::uint64_t kMostStarts = 8;
+// What is less is rounding, whose ranks would say nothing; where that is all, filters are alike.
+constexpr double kLeastError = 1e-9;
 
 struct Met {
   std::string energy;
@@ -69,7 +71,11 @@ Errors ErrorsOf(const KernelRow& row, const Met& met, double inertia) {
     distances.push_back((f - p).norm() / p.norm());
     if (best.norm() > 0) step_errors.push_back((step(f) - best).norm() / best.norm());
   }
-  return {distances.size(), MedianOf(distances), MedianOf(step_errors)};
+  const auto median = [](const std::vector<double>& errors) {
+    const double middle = MedianOf(errors);
+    return middle < kLeastError ? 0 : middle;
+  };
+  return {distances.size(), median(distances), median(step_errors)};
 }
 
 // Ranks from 0; those of equal values are their mean.

@@ -14,8 +14,9 @@ namespace definite::scenes {
 // Of a row, over contacts met in runs with the analytic filter, of the same length and mass.
 struct Errors {
   std::size_t contacts = 0;
-  // Medians, relative to the nearest PSD matrix P: |F - P|, and what it makes of the step of one
-  // contact by itself, |(M/dt^2 + F)^-1 g - (M/dt^2 + P)^-1 g| (docs/protocol.md, section 1).
+  // Medians, 0 where they are no more than rounding, relative to the nearest PSD matrix P: |F - P|,
+  // and what it makes of the step of one contact by itself, |(M/dt^2 + F)^-1 g - (M/dt^2 + P)^-1 g|
+  // (docs/protocol.md, section 1).
   double distance = 0, step_error = 0;
 };
 
